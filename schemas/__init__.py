@@ -1,0 +1,1 @@
+"""The contract: the signals, their message models and the vocabulary. No behaviour, no service is imported."""

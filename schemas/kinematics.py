@@ -1,0 +1,70 @@
+"""What estimation says of the body: joint states, the calibrated model and the picture of it for a screen."""
+
+from pydantic import Field
+
+from schemas.payload import Payload, QuaternionWXYZ, SessionTime, Vector3
+from schemas.vocabulary import Segment, SensorState
+
+
+class JointState(Payload):
+    """Joint coordinates of one batch of samples, in the order of BODY_MODELS[model]."""
+
+    model: str
+    captured_ns: list[SessionTime]
+    position: list[list[float]] = Field(description="rad, n x dof")
+    velocity: list[list[float]] = Field(description="rad/s, n x dof")
+    acceleration: list[list[float]] = Field(description="rad/s^2, n x dof")
+    position_std: list[list[float]] = Field(description="rad, n x dof, one standard deviation")
+    velocity_std: list[list[float]] = Field(description="rad/s, n x dof, one standard deviation")
+    valid: list[bool] = Field(description="per dof: false while no sensor observes it or before calibration")
+
+
+class SensorAlignment(Payload):
+    """How one sensor sits on its segment, and how sure that is."""
+
+    sensor: str
+    segment: Segment
+    quat_segment_from_sensor: QuaternionWXYZ = Field(description="rotation, dimensionless")
+    gyro_bias: Vector3 = Field(description="rad/s, sensor frame")
+    quality: float = Field(ge=0, le=1, description="0 a guess, 1 certain")
+
+
+class Calibration(Payload):
+    """The calibrated body: published once when the estimator starts to estimate, and after each change."""
+
+    model: str
+    estimator: str
+    method: str = Field(description="what the alignment rests on, e.g. standing+walking")
+    datum: str = Field(description="what zero means, e.g. quiet standing, both segments vertical")
+    quality: float = Field(ge=0, le=1, description="the worst sensor's quality")
+    sensors: list[SensorAlignment]
+
+
+class SegmentPose(Payload):
+    """Where a bone is drawn."""
+
+    segment: Segment
+    position: Vector3 = Field(description="m, proximal joint in the world, pelvis at the origin of x and z")
+    quat_world_from_segment: QuaternionWXYZ = Field(description="rotation, dimensionless")
+    valid: bool
+
+
+class SensorStatus(Payload):
+    """State of one sensor for the screen."""
+
+    sensor: str
+    state: SensorState
+    since_ns: SessionTime
+
+
+class LivePose(Payload):
+    """The view: 20-30 Hz, best effort, not archived."""
+
+    captured_ns: SessionTime
+    phase: str = Field(description="waiting, calibrating or estimating")
+    message: str = Field(description="what the therapist should do or know; empty when all is well")
+    segments: list[SegmentPose]
+    angles: dict[str, float] = Field(description="rad, by degree of freedom; only valid ones")
+    angles_std: dict[str, float] = Field(description="rad, by degree of freedom; only valid ones")
+    sensors: list[SensorStatus]
+    cadence_per_min: float | None = Field(description="steps per minute while the rhythm is locked")

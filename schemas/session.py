@@ -1,0 +1,80 @@
+"""What a session is: who measures what, on which body, with which parameters. No identity of a person."""
+
+from enum import StrEnum
+from typing import Literal
+
+from pydantic import Field
+
+from schemas.payload import Payload, Vector3
+from schemas.vocabulary import Segment
+
+
+class Placement(StrEnum):
+    """Side of the segment a sensor is strapped to: where its outward axis points, anatomically."""
+
+    ANTERIOR = "anterior"
+    POSTERIOR = "posterior"
+    LATERAL = "lateral"
+    MEDIAL = "medial"
+    UNKNOWN = "unknown"
+
+
+class SensorDescription(Payload):
+    """One inertial sensor and where it is worn."""
+
+    name: str = Field(description="unique within the session")
+    segment: Segment
+    rate_hz: float = Field(gt=0, description="nominal sample rate, Hz")
+    outward_axis: Vector3 = Field(description="unit vector in the sensor frame that points out of the skin")
+    placement: Placement
+    position_in_segment: Vector3 | None = Field(
+        description="m from the segment's proximal joint, segment frame; null when unknown"
+    )
+
+
+class HubDescription(Payload):
+    """One receiver: everything it delivers shares its clock and travels in one stream."""
+
+    name: str
+    sensors: list[SensorDescription]
+
+
+class Anthropometry(Payload):
+    """Body dimensions used by the model."""
+
+    height_m: float | None = Field(gt=0, description="m")
+    mass_kg: float | None = Field(gt=0, description="kg")
+    thigh_length_m: float = Field(gt=0, description="m, hip centre to knee centre")
+    shank_length_m: float = Field(gt=0, description="m, knee centre to ankle centre")
+    hip_width_m: float = Field(gt=0, description="m, between the hip centres")
+    source: Literal["measured", "regression", "default"]
+
+
+class StandingInterval(Payload):
+    """A span that the operator marked as quiet standing."""
+
+    from_ns: int = Field(description="ns since the session started")
+    to_ns: int = Field(description="ns since the session started")
+
+
+class ReferenceChannel(Payload):
+    """A channel of truth that came with the recording; never seen by an estimator."""
+
+    name: str
+    unit: str = Field(description="SI unit of the values")
+
+
+class SessionDescription(Payload):
+    """Everything a node needs to know before the first sample."""
+
+    session: str = Field(description="random id")
+    title: str
+    started_unix_ns: int = Field(description="ns since the Unix epoch at session time zero")
+    origin: Literal["recording", "archive", "synthetic", "device"]
+    protocol: str
+    estimator: str = Field(description="a name of vocabulary.ESTIMATORS")
+    hubs: list[HubDescription]
+    anthropometry: Anthropometry
+    standing: list[StandingInterval]
+    reference: list[ReferenceChannel]
+    duration_s: float | None = Field(description="s; null for a live source")

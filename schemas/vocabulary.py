@@ -1,0 +1,104 @@
+"""The words of the field as Ambula uses them: segments, degrees of freedom with their positive direction, events.
+
+Frames are ISB for the world and for every segment, never mirrored: x forward, y up, z right
+(clinical conventions: Wu et al. 2002; the same axes as OpenSim).
+"""
+
+from dataclasses import dataclass
+from enum import StrEnum
+
+
+class Side(StrEnum):
+    """Body side."""
+
+    LEFT = "left"
+    RIGHT = "right"
+
+    @property
+    def other(self) -> "Side":
+        """The opposite side."""
+        return Side.RIGHT if self is Side.LEFT else Side.LEFT
+
+
+class Segment(StrEnum):
+    """Body segments that can carry a sensor."""
+
+    PELVIS = "pelvis"
+    TORSO = "torso"
+    THIGH_LEFT = "thigh_left"
+    THIGH_RIGHT = "thigh_right"
+    SHANK_LEFT = "shank_left"
+    SHANK_RIGHT = "shank_right"
+    FOOT_LEFT = "foot_left"
+    FOOT_RIGHT = "foot_right"
+
+
+class GaitEventKind(StrEnum):
+    """Contact events of one foot."""
+
+    INITIAL_CONTACT = "initial_contact"
+    TOE_OFF = "toe_off"
+
+
+class SensorState(StrEnum):
+    """What a therapist is told about a sensor."""
+
+    OK = "ok"
+    CALIBRATING = "calibrating"
+    MISSING = "missing"
+    STUCK = "stuck"
+    REJECTED = "rejected"
+
+
+@dataclass(frozen=True, slots=True)
+class DegreeOfFreedom:
+    """One joint coordinate.
+
+    `axis` is the unit rotation axis in the parent frame (after the joint's earlier rotations) for which a
+    positive angle moves the body in the direction that `positive` states.
+    """
+
+    name: str
+    axis: tuple[int, int, int]
+    positive: str
+
+
+FORWARD, UP, RIGHT = (1, 0, 0), (0, 1, 0), (0, 0, 1)
+BACKWARD, DOWN, LEFT = (-1, 0, 0), (0, -1, 0), (0, 0, -1)
+
+
+def _leg(side: Side) -> tuple[DegreeOfFreedom, ...]:
+    # Ab/adduction and axial rotation mirror between the legs; flexion does not, since z points right for both.
+    frontal, axial = (FORWARD, UP) if side is Side.RIGHT else (BACKWARD, DOWN)
+    return (
+        DegreeOfFreedom(f"hip_flexion_{side}", RIGHT, "thigh forward"),
+        DegreeOfFreedom(f"hip_adduction_{side}", frontal, "thigh towards the midline"),
+        DegreeOfFreedom(f"hip_internal_rotation_{side}", axial, "toes towards the midline"),
+        DegreeOfFreedom(f"knee_flexion_{side}", LEFT, "shank backward"),
+        DegreeOfFreedom(f"knee_adduction_{side}", frontal, "shank towards the midline"),
+        DegreeOfFreedom(f"knee_internal_rotation_{side}", axial, "toes towards the midline"),
+    )
+
+
+PELVIS_ROTATIONS = (
+    DegreeOfFreedom("pelvis_rotation", UP, "turned to the left"),
+    DegreeOfFreedom("pelvis_tilt", LEFT, "anterior: the front goes down"),
+    DegreeOfFreedom("pelvis_obliquity", BACKWARD, "the right side goes up"),
+)
+
+LOWER_BODY: tuple[DegreeOfFreedom, ...] = (*PELVIS_ROTATIONS, *_leg(Side.RIGHT), *_leg(Side.LEFT))
+"""Rotational coordinates of the lower body, in the order of every joint_state message of that model.
+
+Zero is the anatomical posture: pelvis level and facing world x, thighs and shanks vertical.
+The three translations of the pelvis are not observable from inertial sensors and are not reported.
+"""
+
+BODY_MODELS: dict[str, tuple[DegreeOfFreedom, ...]] = {"lower_body": LOWER_BODY}
+"""Model name (as in a joint_state message) -> its degrees of freedom, in order."""
+
+ESTIMATORS: dict[str, str] = {
+    "ekf": "EKF on joint position, velocity and acceleration",
+    "rhythmic_ekf": "the same with the jerk of a rhythm model that knows whether it is locked",
+    "rhythmic_ekf_joukov": "the same with the canonical dynamical system as printed (Joukov eq. 15-21)",
+}
+"""Selectable estimators, by name."""

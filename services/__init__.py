@@ -1,0 +1,1 @@
+"""Ambula's processes and the libraries they share; see services/README.md."""

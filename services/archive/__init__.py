@@ -1,0 +1,1 @@
+"""Every message of a session, safe on disk."""

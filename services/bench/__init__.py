@@ -1,0 +1,1 @@
+"""Scoreboards: each prints a table of measured figures beside their targets."""

@@ -1,0 +1,1 @@
+"""Pure mathematics of the body: rotations, models, Kalman steps, rhythm."""

@@ -1,0 +1,1 @@
+"""The fabric: the only package that talks to Zenoh."""

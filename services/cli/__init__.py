@@ -1,0 +1,1 @@
+"""The ambula command and the local supervisor."""

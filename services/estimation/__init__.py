@@ -1,0 +1,1 @@
+"""Sample streams become joint states."""

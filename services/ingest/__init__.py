@@ -1,0 +1,1 @@
+"""Sensors, recordings and simulations become SI sample streams here."""

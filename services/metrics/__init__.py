@@ -1,0 +1,1 @@
+"""Strides become the numbers of a session."""

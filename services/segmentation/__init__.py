@@ -1,0 +1,1 @@
+"""Joint states become gait events and strides."""
