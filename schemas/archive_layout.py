@@ -1,4 +1,4 @@
-"""How a recorded session lies on disk: file, topic and metadata names, the manifest, and time in MCAP.
+"""How a session lies in an MCAP file: names shared by whoever writes one and whoever reads it. Constants, no codec.
 
 One folder per session. Every file is ordinary MCAP with JSON channels; `services/archive/README.md` shows how to
 open one. In a message record, `log_time` is the wall time of capture, `publish_time` the wall time of arrival and
@@ -12,15 +12,16 @@ from typing import Literal, NamedTuple
 from pydantic import Field
 
 from schemas.payload import Payload, SessionTime
-from schemas.signals import BY_NAME, Signal
+from schemas.session import SessionDescription
+from schemas.signals import BY_NAME, SESSION, Signal
 
 PROFILE = "ambula"
 MESSAGE_ENCODING = "json"
 SCHEMA_ENCODING = "jsonschema"
 
-SESSION_RECORD = "ambula.session"
-"""Name of the MCAP metadata record that describes the session; its keys follow."""
-DESCRIPTION_KEY = "description"
+SESSION_METADATA = "ambula.session"
+"""Name of the MCAP metadata record that repeats the session description, JSON under `DESCRIPTION_FIELD`."""
+DESCRIPTION_FIELD = "description"
 DESCRIPTION_SHA256_KEY = "description_sha256"
 SEGMENT_KEY = "segment"
 SOFTWARE_KEY = "software"
@@ -32,6 +33,8 @@ TIME_UNIT_KEY = "time_unit"
 TIME_UNIT = "ns"
 """The four keys of every channel's metadata; the session record has all but `epoch`."""
 
+SESSION_TOPIC = f"{SESSION.name}/{SESSION.producer}"
+"""Topic of the session description as a message, before the first sample of every file."""
 END_TOPIC = "stream_end/archive"
 """Channel of `StreamEnd` messages: the envelopes that closed a stream, which have no payload of their own."""
 
@@ -43,7 +46,7 @@ CHECKPOINT_PREFIX = "checkpoint-"
 Kind = Literal["raw", "derived"]
 _SESSION = re.compile(r"[A-Za-z0-9][A-Za-z0-9_-]{0,63}")
 _VERSION = r"[A-Za-z0-9][A-Za-z0-9.+-]*"
-_FILE = re.compile(rf"(?:raw|derived-(?P<version>{_VERSION}))(?:_(?P<index>[0-9]{{3,6}}))?\.mcap(?P<part>\.part)?")
+_FILE = re.compile(rf"(?:raw|derived-(?P<version>{_VERSION}))(?:_(?P<number>[0-9]{{3,6}}))?\.mcap(?P<part>\.part)?")
 
 
 class StreamEnd(Payload):
@@ -56,22 +59,22 @@ class StreamEnd(Payload):
 
 
 class SegmentName(NamedTuple):
-    """What a file name says. A recording starts with index 0; each rotation or restart takes the next.
+    """What a file name says. A recording starts with number 0; each rotation or restart takes the next.
 
     `version` is the software that computed a derived file, None for raw ones; `part` is true while it is open.
     """
 
     kind: Kind
     version: str | None
-    index: int
+    number: int
     part: bool
 
     @property
     def file_name(self) -> str:
         """`raw.mcap`, `raw_001.mcap`, `derived-0.1.0.mcap`, ... with `.part` while open."""
         stem = "raw" if self.version is None else f"derived-{self.version}"
-        number = f"_{self.index:03d}" if self.index else ""
-        return f"{stem}{number}.mcap{PART_SUFFIX if self.part else ''}"
+        suffix = f"_{self.number:03d}" if self.number else ""
+        return f"{stem}{suffix}.mcap{PART_SUFFIX if self.part else ''}"
 
     @property
     def sealed(self) -> "SegmentName":
@@ -85,7 +88,7 @@ def parse_file_name(name: str) -> SegmentName | None:
     if match is None:
         return None
     version = match["version"]
-    return SegmentName("raw" if version is None else "derived", version, int(match["index"] or 0), bool(match["part"]))
+    return SegmentName("raw" if version is None else "derived", version, int(match["number"] or 0), bool(match["part"]))
 
 
 def folder_name(session: str) -> str:
@@ -95,13 +98,13 @@ def folder_name(session: str) -> str:
     return session
 
 
-def topic_of(signal: Signal, source: str) -> str:
+def topic(signal: Signal, source: str) -> str:
     """MCAP topic of a stream: `imu/hub`."""
     return f"{signal.name}/{source}"
 
 
 def parse_topic(topic: str) -> tuple[Signal, str] | None:
-    """Inverse of `topic_of`; None for a topic that is not a signal of the table (such as `END_TOPIC`)."""
+    """Inverse of `topic`; None for a topic that is not a signal of the table (such as `END_TOPIC`)."""
     name, _, source = topic.partition("/")
     return (BY_NAME[name], source) if name in BY_NAME and source else None
 
@@ -116,14 +119,14 @@ def channel_metadata(session: str, epoch: int, schema_version: str) -> dict[str,
     }
 
 
-def log_time_ns(started_unix_ns: int, captured_ns: int) -> int:
+def log_time_ns(description: SessionDescription, captured_ns: int) -> int:
     """Session time to MCAP log time, ns since the Unix epoch."""
-    return started_unix_ns + captured_ns
+    return description.started_unix_ns + captured_ns
 
 
-def captured_ns_of(started_unix_ns: int, log_time: int) -> int:
-    """MCAP log time to session time, ns since the session started."""
-    return log_time - started_unix_ns
+def captured_ns(description: SessionDescription, log_time: int) -> int:
+    """MCAP log time to session time, ns since the session started; inverse of `log_time_ns`."""
+    return log_time - description.started_unix_ns
 
 
 class RecordingState(StrEnum):
