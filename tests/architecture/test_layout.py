@@ -22,7 +22,7 @@ def compose() -> dict:
 
 
 def test_every_process_is_here():
-    assert PROCESSES == sorted(["ingest", "estimation", "segmentation", "metrics", "archive", "gateway"])
+    assert sorted(["ingest", "estimation", "segmentation", "metrics", "archive", "gateway"]) == PROCESSES
 
 
 @pytest.mark.parametrize("process", PROCESSES)
