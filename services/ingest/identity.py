@@ -1,0 +1,29 @@
+"""What a source cannot know from its data: the session's id, its wall clock, and what the operator chose."""
+
+import re
+import secrets
+import time
+from dataclasses import dataclass
+
+from schemas.vocabulary import ESTIMATORS
+from services.ingest.errors import InvalidOption
+
+_SESSION_PATTERN = re.compile(r"[a-z0-9][a-z0-9_-]{0,63}")
+
+
+@dataclass(frozen=True, slots=True)
+class Identity:
+    """`estimator` None leaves the choice to the source."""
+
+    session: str
+    started_unix_ns: int
+    estimator: str | None = None
+
+    @classmethod
+    def new(cls, session: str | None = None, estimator: str | None = None) -> "Identity":
+        """A fresh session that starts now. Raises InvalidOption for an id that cannot stand in a key."""
+        if session is not None and _SESSION_PATTERN.fullmatch(session) is None:
+            raise InvalidOption(f"session {session!r}: use lower-case letters, digits, - and _, at most 64")
+        if estimator is not None and estimator not in ESTIMATORS:
+            raise InvalidOption(f"estimator {estimator!r} is unknown; choose one of {', '.join(ESTIMATORS)}")
+        return cls(session or secrets.token_hex(8), time.time_ns(), estimator)

@@ -1,0 +1,110 @@
+"""A recording folder as a source: csv columns in vendor units and axes become samples in Ambula's."""
+
+import itertools
+from collections.abc import Iterator
+from datetime import UTC
+from pathlib import Path
+
+import numpy as np
+
+from schemas.health import Rejection
+from schemas.session import (
+    HubDescription,
+    ReferenceChannel,
+    SensorDescription,
+    SessionDescription,
+    StandingInterval,
+)
+from schemas.signals import IMU
+from schemas.vocabulary import Segment
+from services.flow.message import Stream
+from services.ingest.driver import SourceMessage
+from services.ingest.identity import Identity
+from services.ingest.locations import find_data
+from services.ingest.manifest import HubEntry, Manifest, SensorEntry, load_manifest
+from services.ingest.reference import channels_of, read_reference, reference_track
+from services.ingest.sensor_file import read_sensor
+from services.ingest.tally import Tally
+from services.ingest.tracks import hub_messages, in_order, reference_messages
+
+
+class Recording:
+    """A recording read into memory, checked, and replayed in the order of capture."""
+
+    def __init__(self, manifest_path: Path, identity: Identity) -> None:
+        """Read everything. Raises a SourceError that names file, line and column."""
+        self._manifest = load_manifest(manifest_path)
+        self._identity = identity
+        self._tally = Tally()
+        self._folder = find_data(self._manifest.data, manifest_path.resolve().parent)
+        raw = [
+            [read_sensor(self._folder, self._manifest, sensor, self._tally) for sensor in hub.sensor]
+            for hub in self._manifest.hub
+        ]
+        truth = [read_reference(self._folder, self._manifest, entry, self._tally) for entry in self._manifest.reference]
+        zero_s = min(part.time_s.min() for part in [*itertools.chain(*raw), *truth])
+        self._hubs = [[track.placed(zero_s) for track in tracks] for tracks in raw]
+        self._reference = reference_track(truth, zero_s) if truth else None
+
+    def describe(self) -> SessionDescription:
+        """The session as the manifest tells it."""
+        manifest, identity = self._manifest, self._identity
+        started = manifest.started
+        if started is not None and started.tzinfo is None:
+            started = started.replace(tzinfo=UTC)
+        return SessionDescription(
+            session=identity.session,
+            title=manifest.title,
+            started_unix_ns=identity.started_unix_ns if started is None else round(started.timestamp() * 1e9),
+            origin="recording",
+            protocol=manifest.protocol,
+            estimator=identity.estimator or manifest.estimator,
+            hubs=[
+                HubDescription(name=hub.name, sensors=[_described(manifest, sensor) for sensor in hub.sensor])
+                for hub in manifest.hub
+            ],
+            anthropometry=manifest.anthropometry.described(),
+            standing=[
+                StandingInterval(from_ns=round(span.from_s * 1e9), to_ns=round(span.to_s * 1e9))
+                for span in manifest.standing
+            ],
+            reference=[
+                ReferenceChannel(name=name, unit=unit)
+                for entry in manifest.reference
+                for name, unit in channels_of(entry)
+            ],
+            duration_s=self._last_ns() * 1e-9,
+        )
+
+    def messages(self) -> Iterator[SourceMessage]:
+        """One message per hub and tick, truth beside it."""
+        streams = [
+            hub_messages(Stream(IMU, hub.name), tracks, round(1e9 / _fastest(self._manifest, hub)))
+            for hub, tracks in zip(self._manifest.hub, self._hubs, strict=True)
+        ]
+        if self._reference is not None:
+            streams.append(reference_messages(self._reference, round(1e9 / self._manifest.rate_hz)))
+        return in_order(streams)
+
+    def rejections(self) -> list[Rejection]:
+        """Rows that were left out, by sensor or file."""
+        return self._tally.rejections()
+
+    def _last_ns(self) -> int:
+        return max(int(track.captured_ns[-1]) for tracks in self._hubs for track in tracks)
+
+
+def _fastest(manifest: Manifest, hub: HubEntry) -> float:
+    return max(sensor.rate_hz or manifest.rate_hz for sensor in hub.sensor)
+
+
+def _described(manifest: Manifest, sensor: SensorEntry) -> SensorDescription:
+    outward = np.array(sensor.outward_axis)
+    return SensorDescription(
+        name=sensor.name,
+        segment=Segment(sensor.segment),
+        rate_hz=sensor.rate_hz or manifest.rate_hz,
+        outward_axis=(outward / np.linalg.norm(outward)).tolist(),
+        placement=sensor.placement,
+        position_in_segment=sensor.position_in_segment,
+    )

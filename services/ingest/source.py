@@ -1,0 +1,69 @@
+"""Open any source by its specification, and read it as messages."""
+
+from collections.abc import Iterator
+from pathlib import Path
+
+from services.flow.message import Envelope, Message, Stream
+from services.ingest.driver import Source, SourceMessage, streams_of
+from services.ingest.errors import SourceError, UnknownSource
+from services.ingest.identity import Identity
+from services.ingest.locations import MANIFESTS
+from services.ingest.manifest import FILE_NAME
+from services.ingest.recording import Recording
+from services.ingest.synthetic.source import open_synthetic
+from services.ingest.tracks import joined
+
+__all__ = ["Source", "SourceError", "SourceMessage", "iter_messages", "open_source", "shipped_manifests"]
+
+
+def shipped_manifests() -> list[str]:
+    """Names of the recordings that the software knows; their data is looked for beside it."""
+    return sorted(path.stem for path in MANIFESTS.glob("*.toml"))
+
+
+def open_source(spec: str, *, session: str | None = None, estimator: str | None = None) -> Source:
+    """Open a recording folder, a manifest, an .mcap file, a known recording's name, or `synthetic:walk?speed=1.1`.
+
+    `session` None takes a random id, `estimator` None leaves the choice to the source.
+    Raises SourceError, saying what is wrong where and what to do.
+    """
+    identity = Identity.new(session, estimator)
+    scheme, separator, rest = spec.partition(":")
+    if separator and scheme == "synthetic":
+        return open_synthetic(rest, identity)
+    if spec in shipped_manifests():
+        return Recording(MANIFESTS / f"{spec}.toml", identity)
+    path = Path(spec)
+    if path.suffix == ".toml":
+        return Recording(path, identity)
+    if path.is_dir():
+        return Recording(path / FILE_NAME, identity)
+    known = ", ".join(shipped_manifests())
+    raise UnknownSource(
+        f"{spec!r} is no folder with {FILE_NAME}, no .mcap file, no synthetic:walk and no known recording ({known})"
+    )
+
+
+def iter_messages(source: Source, ticks: int = 1) -> Iterator[Message]:
+    """Every message of a source as live publishing sends it: numbered from zero, each stream closed at its end."""
+    sequences = {stream: 0 for stream in streams_of(source.describe())}
+    last_ns = dict.fromkeys(sequences, 0)
+    for stream, captured_ns, payload in in_batches(source.messages(), ticks):
+        yield Message(stream, Envelope(0, sequences[stream], captured_ns), payload)
+        sequences[stream] += 1
+        last_ns[stream] = captured_ns
+    for stream, sequence in sequences.items():
+        yield Message(stream, Envelope(0, sequence, last_ns[stream], final=True), None)
+
+
+def in_batches(messages: Iterator[SourceMessage], ticks: int) -> Iterator[SourceMessage]:
+    """Join `ticks` consecutive messages of a stream into one; what is incomplete at the end comes last."""
+    held: dict[Stream, tuple[int, SourceMessage]] = {}
+    for message in messages:
+        count, so_far = held.pop(message.stream, (0, None))
+        message = message if so_far is None else joined(so_far, message)
+        if count + 1 >= ticks:
+            yield message
+        else:
+            held[message.stream] = (count + 1, message)
+    yield from (message for _, message in held.values())

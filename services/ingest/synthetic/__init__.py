@@ -1,0 +1,1 @@
+"""A synthetic walker that knows the truth about itself. Pure."""

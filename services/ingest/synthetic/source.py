@@ -1,0 +1,2 @@
+def open_synthetic(rest, identity):
+    raise NotImplementedError

@@ -1,0 +1,101 @@
+"""Samples as arrays, and how they become messages: one per hub and tick, truth beside it, in the order of capture."""
+
+import heapq
+from collections.abc import Iterable, Iterator, Sequence
+from dataclasses import dataclass
+from operator import attrgetter
+
+import numpy as np
+from numpy.typing import NDArray
+
+from schemas.imu import ImuBatch, ReferenceBatch, SensorSamples
+from services.flow.message import Stream
+from services.ingest.driver import REFERENCE_STREAM, SourceMessage
+
+Times = NDArray[np.int64]
+Values = NDArray[np.float64]
+
+
+@dataclass(frozen=True, slots=True)
+class ImuTrack:
+    """One sensor: captured_ns n (increasing), angular_velocity n x 3 rad/s, specific_force n x 3 m/s^2, all finite."""
+
+    captured_ns: Times
+    angular_velocity: Values
+    specific_force: Values
+
+
+@dataclass(frozen=True, slots=True)
+class ReferenceTrack:
+    """Truth: captured_ns n (increasing), values n x channels in SI, NaN where unknown."""
+
+    captured_ns: Times
+    values: Values
+
+
+def hub_messages(stream: Stream, tracks: Sequence[ImuTrack], tick_ns: int) -> Iterator[SourceMessage]:
+    """Samples of a hub's sensors, tick by tick; a tick in which nobody delivered has no message.
+
+    A sample belongs to the tick whose nominal instant is nearest, so jitter below half a tick moves nothing.
+    """
+    present, cuts = _cut([track.captured_ns for track in tracks], tick_ns)
+    columns = [
+        (track.captured_ns.tolist(), track.angular_velocity.tolist(), track.specific_force.tolist()) for track in tracks
+    ]
+    for k in range(present):
+        # The arrays are finite and of equal length by contract, so the models need not be validated again.
+        sensors = [
+            SensorSamples.model_construct(
+                captured_ns=times[cut[k] : cut[k + 1]],
+                angular_velocity=rates[cut[k] : cut[k + 1]],
+                specific_force=forces[cut[k] : cut[k + 1]],
+            )
+            for (times, rates, forces), cut in zip(columns, cuts, strict=True)
+        ]
+        newest = max(samples.captured_ns[-1] for samples in sensors if samples.captured_ns)
+        yield SourceMessage(stream, newest, ImuBatch.model_construct(sensors=sensors))
+
+
+def reference_messages(track: ReferenceTrack, tick_ns: int) -> Iterator[SourceMessage]:
+    """Truth in messages of one tick."""
+    present, (cut,) = _cut([track.captured_ns], tick_ns)
+    times = track.captured_ns.tolist()
+    rows = [[None if value != value else value for value in row] for row in track.values.tolist()]
+    for k in range(present):
+        span = slice(cut[k], cut[k + 1])
+        batch = ReferenceBatch.model_construct(captured_ns=times[span], values=rows[span])
+        yield SourceMessage(REFERENCE_STREAM, times[span][-1], batch)
+
+
+def in_order(streams: Iterable[Iterator[SourceMessage]]) -> Iterator[SourceMessage]:
+    """Interleave streams by time of capture; on a tie in the order given."""
+    return heapq.merge(*streams, key=attrgetter("captured_ns"))
+
+
+def _cut(times: Sequence[Times], tick_ns: int) -> tuple[int, list[list[int]]]:
+    """How many ticks hold anything, and per sensor the index of its first sample of each such tick, plus the end."""
+    ticks = [(captured_ns + tick_ns // 2) // tick_ns for captured_ns in times]
+    present = np.unique(np.concatenate(ticks))
+    return len(present), [[*np.searchsorted(tick, present).tolist(), len(tick)] for tick in ticks]
+
+
+def joined(first: SourceMessage, second: SourceMessage) -> SourceMessage:
+    """Two consecutive messages of one stream as one."""
+    match first.payload, second.payload:
+        case ImuBatch() as a, ImuBatch() as b:
+            sensors = [_joined_samples(x, y) for x, y in zip(a.sensors, b.sensors, strict=True)]
+            return second._replace(payload=ImuBatch.model_construct(sensors=sensors))
+        case ReferenceBatch() as a, ReferenceBatch() as b:
+            batch = ReferenceBatch.model_construct(
+                captured_ns=a.captured_ns + b.captured_ns, values=a.values + b.values
+            )
+            return second._replace(payload=batch)
+    raise TypeError(f"messages of {first.stream.name} cannot be joined")
+
+
+def _joined_samples(a: SensorSamples, b: SensorSamples) -> SensorSamples:
+    return SensorSamples.model_construct(
+        captured_ns=a.captured_ns + b.captured_ns,
+        angular_velocity=a.angular_velocity + b.angular_velocity,
+        specific_force=a.specific_force + b.specific_force,
+    )
