@@ -1,0 +1,1 @@
+"""Compiled inner loops of the lower-body filter: kinematics, measurement rows, covariance, one step."""

@@ -1,0 +1,91 @@
+"""The arrays that the kernels work on, by what they describe. Shapes: n joints, t of them translations, r rotations,
+S sensors, N = 3 r + t states with a covariance.
+
+Joints are ordered from the root outwards, translations first. The state is x (3, n): position, velocity and
+acceleration of each joint. Columns of the covariance: rotation i has columns i, r + i and 2 r + i for position,
+velocity and acceleration; translation k has column 3 r + k for its acceleration alone, because no inertial sensor
+sees where the pelvis is or how fast it travels.
+"""
+
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+Array = NDArray[np.float64]
+Indices = NDArray[np.int64]
+
+
+class Body(NamedTuple):
+    """Tree of one-axis joints."""
+
+    parent: Indices  # (n,) joint that carries this one, -1 for the world
+    axis: Indices  # (n,) coordinate axis of the parent frame: 0 x, 1 y, 2 z
+    sign: Array  # (n,) +1 or -1: direction along that axis
+    offset: Array  # (n, 3) m, origin of the joint in the parent's frame
+    translations: int  # t
+
+
+class Sensors(NamedTuple):
+    """Where the sensors sit."""
+
+    joint: Indices  # (S,) last joint of the sensor's segment
+    rotation: Array  # (S, 3, 3) R_segment_from_sensor
+    position: Array  # (S, 3) m, in the segment's frame from its proximal joint
+    path: Indices  # (S, deepest) joints from the root to the segment
+    path_length: Indices  # (S,)
+
+
+class Columns(NamedTuple):
+    """Which columns of the covariance each kind of row touches."""
+
+    gyro: Indices  # (S, N)
+    gyro_count: Indices  # (S,)
+    accel: Indices  # (S, N)
+    accel_count: Indices  # (S,)
+
+
+class Options(NamedTuple):
+    """What the measurement model is made of; see LowerBodyOptions for why."""
+
+    gyro_sees_position: bool
+    accel_sees_motion: bool
+    yaw_mode: int  # 0 none, 1 each segment against the world, 2 thighs against the pelvis
+    yaw_bodies: Indices  # (3,) last joint of pelvis, right thigh, left thigh
+
+
+class Noise(NamedTuple):
+    """How much is believed, as variances."""
+
+    jerk: Array  # (n,) rad^2/s^5 white jerk; translations m^2/s^5
+    gyro: Array  # (S,) rad^2/s^2
+    accel: Array  # (S,) m^2/s^4
+    yaw: float  # rad^2
+
+
+class Motion(NamedTuple):
+    """Scratch: what the recursion over the joints finds, in world axes."""
+
+    rotation: Array  # (n, 3, 3) R_world_from_segment behind each joint
+    axis: Array  # (n, 3) joint axis, positive direction
+    rate: Array  # (n, 3) rad/s angular velocity behind the joint
+    axis_rate: Array  # (n, 3) first derivative of the axis
+    axis_acceleration: Array  # (n, 3) second derivative of the axis
+    angular_acceleration: Array  # (n, 3) rad/s^2 behind the joint
+    origin: Array  # (n, 3) m
+    origin_velocity: Array  # (n, 3) m/s
+    origin_acceleration: Array  # (n, 3) m/s^2
+    sensor: Array  # (3, 3) R_world_from_sensor of the sensor at hand
+
+
+class Update(NamedTuple):
+    """Scratch: rows and gains of the measurement update."""
+
+    H: Array  # (S, 6, N)
+    innovation: Array  # (S, 6)
+    yaw_H: Array  # (3, N)
+    yaw_innovation: Array  # (3,)
+    dx: Array  # (N,)
+    W: Array  # (6, N)
+    L: Array  # (6, 6)
+    y: Array  # (6,)
