@@ -1,0 +1,75 @@
+"""The web application: routes, errors, headers and the parts behind them."""
+
+import asyncio
+from collections.abc import AsyncIterator
+from contextlib import asynccontextmanager
+from importlib.metadata import version
+from typing import Any
+
+from fastapi import FastAPI
+from fastapi.openapi.utils import get_openapi
+
+from services.gateway import pages, problems
+from services.gateway.context import Gateway
+from services.gateway.control import Control
+from services.gateway.database import open_database
+from services.gateway.health.routes import router as health
+from services.gateway.live.hub import LiveHub
+from services.gateway.live.routes import router as live_routes
+from services.gateway.patients.routes import router as patients
+from services.gateway.problems import ProblemOut
+from services.gateway.recordings.routes import router as recordings
+from services.gateway.security import BodyLimit, HostNames, SecurityHeaders
+from services.gateway.sessions.keeper import SessionKeeper
+from services.gateway.sessions.routes import router as sessions
+from services.gateway.settings import GatewaySettings
+from services.gateway.sources.routes import router as sources
+
+DESCRIPTION = "Patients, sessions, metrics and recordings of one Ambula site. Research software, not a medical device."
+
+
+def create_app(settings: GatewaySettings, live: LiveHub, control: Control) -> FastAPI:
+    """Put the gateway together. Opens the database; raises DatabaseError when it cannot be used."""
+    database = open_database(settings.database_url)
+    keeper = SessionKeeper(database, live, live.parameters)
+
+    @asynccontextmanager
+    async def lifespan(_: FastAPI) -> AsyncIterator[None]:
+        live.bind(asyncio.get_running_loop())
+        yield
+        await live.stop()
+        database.close()
+
+    app = FastAPI(
+        title="Ambula",
+        version=version("ambula"),
+        description=DESCRIPTION,
+        lifespan=lifespan,
+        docs_url=None,
+        redoc_url=None,
+        openapi_url="/v1/openapi.json",
+    )
+    app.state.gateway = Gateway(settings, live.parameters, database, keeper, live, control)
+    problems.install(app)
+    for router in (patients, sessions, recordings, sources, health, live_routes):
+        app.include_router(router)
+    pages.install(app, settings.pages_dir)
+    app.add_middleware(BodyLimit, most_bytes=live.parameters.most_body_bytes)
+    app.add_middleware(HostNames, names=settings.host_names)
+    app.add_middleware(SecurityHeaders)
+    app.openapi = lambda: _openapi(app)  # type: ignore[method-assign]
+    return app
+
+
+def _openapi(app: FastAPI) -> dict[str, Any]:
+    # Problem responses refer to ProblemOut by name; it is no route's own model, so it is added by hand.
+    if app.openapi_schema is None:
+        document = get_openapi(title=app.title, version=app.version, description=app.description, routes=app.routes)
+        schema = ProblemOut.model_json_schema(ref_template="#/components/schemas/{model}")
+        parts = document["components"]["schemas"]
+        parts.update(schema.pop("$defs"))
+        parts["ProblemOut"] = schema
+        for unused in ("HTTPValidationError", "ValidationError"):
+            parts.pop(unused, None)
+        app.openapi_schema = document
+    return app.openapi_schema

@@ -1,0 +1,82 @@
+"""The database: SQLite in WAL mode by default, PostgreSQL by URL; brought to the newest schema at start."""
+
+from collections.abc import Iterator
+from contextlib import contextmanager
+from pathlib import Path
+from typing import Any
+
+from alembic import command
+from alembic.config import Config
+from sqlalchemy import Engine, create_engine, event, make_url, text
+from sqlalchemy.orm import Session, sessionmaker
+
+MIGRATIONS = Path(__file__).parent / "migrations"
+
+
+class DatabaseError(RuntimeError):
+    """The database cannot be used; says what to do."""
+
+
+class Database:
+    """Engine and session factory. Used from many threads."""
+
+    def __init__(self, url: str) -> None:
+        self.engine = _engine(url)
+        self._sessions = sessionmaker(self.engine, expire_on_commit=False)
+
+    @contextmanager
+    def transaction(self) -> Iterator[Session]:
+        """A session that commits at the end, or rolls back when something is raised."""
+        with self._sessions.begin() as session:
+            yield session
+
+    def migrate(self, revision: str = "head") -> None:
+        """Bring the schema to a revision, up or down. Data survive both ways."""
+        config = Config()
+        config.set_main_option("script_location", str(MIGRATIONS).replace("%", "%%"))
+        with self.engine.begin() as connection:
+            config.attributes["connection"] = connection
+            if revision == "head":
+                command.upgrade(config, revision)
+            else:
+                command.downgrade(config, revision)
+
+    def answers(self) -> bool:
+        """Whether a trivial question is answered."""
+        try:
+            with self.engine.connect() as connection:
+                return bool(connection.execute(text("select 1")).scalar() == 1)
+        except Exception:  # noqa: BLE001 - the question is exactly whether anything goes wrong
+            return False
+
+    def close(self) -> None:
+        """Close every connection."""
+        self.engine.dispose()
+
+
+def open_database(url: str) -> Database:
+    """Connect and bring the schema up to date. Raises DatabaseError with what to do next."""
+    address = make_url(url)
+    if address.get_backend_name() == "sqlite" and address.database:
+        Path(address.database).parent.mkdir(parents=True, exist_ok=True)
+    database = Database(url)
+    try:
+        database.migrate()
+    except Exception as error:
+        database.close()
+        shown = address.render_as_string(hide_password=True)
+        raise DatabaseError(f"cannot use the database {shown}: {error}. Check AMBULA_DATABASE.") from error
+    return database
+
+
+def _engine(url: str) -> Engine:
+    engine = create_engine(url, pool_pre_ping=True)
+    if engine.dialect.name == "sqlite":
+        event.listen(engine, "connect", _set_up_sqlite)
+    return engine
+
+
+def _set_up_sqlite(connection: Any, _: object) -> None:
+    # FULL: a committed row survives a power cut, which NORMAL does not promise in WAL mode.
+    for pragma in ("journal_mode=WAL", "synchronous=FULL", "foreign_keys=ON", "busy_timeout=5000"):
+        connection.execute(f"PRAGMA {pragma}")

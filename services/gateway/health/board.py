@@ -1,0 +1,56 @@
+"""The last word of every service, and who has gone silent."""
+
+import time
+from collections.abc import Callable
+from dataclasses import dataclass
+from typing import Any
+
+from schemas.health import Health
+
+SERVICES = ("ingest", "estimation", "segmentation", "metrics", "archive")
+"""Services that a working floor needs beside the gateway."""
+
+FORGET_S = 300.0
+"""s after which a silent instance is taken for retired and no longer listed."""
+
+
+@dataclass(frozen=True, slots=True)
+class Report:
+    """One health message and when it came."""
+
+    health: Health
+    received_s: float
+
+
+class HealthBoard:
+    """Written by the feed, read by routes: one dict whose entries are replaced whole."""
+
+    def __init__(self, stale_s: float, clock: Callable[[], float] = time.monotonic) -> None:
+        self._stale_s = stale_s
+        self._clock = clock
+        self._reports: dict[tuple[str, str], Report] = {}
+
+    def record(self, health: Health) -> None:
+        """A service reported on itself."""
+        self._reports[health.service, health.instance] = Report(health, self._clock())
+
+    def reports(self) -> list[tuple[Health, float]]:
+        """Each instance's last report with its age in s, by name."""
+        now = self._clock()
+        listed = [(report.health, now - report.received_s) for report in list(self._reports.values())]
+        recent = [(health, age) for health, age in listed if age < FORGET_S]
+        return sorted(recent, key=lambda each: (each[0].service, each[0].instance))
+
+    def silent(self) -> list[str]:
+        """Needed services of which no instance has reported lately."""
+        heard = {health.service for health, age in self.reports() if not self.is_stale(age)}
+        return [name for name in SERVICES if name not in heard]
+
+    def is_stale(self, age_s: float) -> bool:
+        """Whether a report of that age means that the service is silent."""
+        return age_s > self._stale_s
+
+    def brief(self) -> dict[str, Any]:
+        """For every screen: is anybody out there, and who is not."""
+        silent = self.silent()
+        return {"connected": len(silent) < len(SERVICES), "silent": silent}

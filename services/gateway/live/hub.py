@@ -1,0 +1,251 @@
+"""What happens now, for everybody who watches: fed from any thread, fanned out on the event loop."""
+
+import asyncio
+import contextlib
+import logging
+import time
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass, field
+
+from schemas.kinematics import LivePose
+from schemas.session import SessionDescription
+from services.gateway.health.board import HealthBoard
+from services.gateway.live import views
+from services.gateway.live.viewer import Viewer
+from services.gateway.live.views import View
+from services.gateway.parameters import GatewayParameters
+
+log = logging.getLogger(__name__)
+
+
+class NotLive(LookupError):
+    """No such session runs now."""
+
+
+class TooManyViewers(RuntimeError):
+    """The bound on open live connections is reached."""
+
+
+@dataclass(slots=True)
+class LatestPose:
+    """The newest skeleton of a session as it came, and when."""
+
+    payload: bytes
+    received_s: float
+
+
+@dataclass(eq=False)
+class LiveSession:
+    """One running session and who watches it."""
+
+    description: SessionDescription
+    patient: str | None = None
+    metrics: View | None = None
+    strides: dict[str, View] = field(default_factory=dict)
+    viewers: set[Viewer] = field(default_factory=set)
+    task: asyncio.Task[None] | None = None
+
+
+class LiveHub:
+    """The only place where threads meet: `pose` just stores, everything else hops onto the event loop."""
+
+    def __init__(
+        self, parameters: GatewayParameters | None = None, clock: Callable[[], float] = time.monotonic
+    ) -> None:
+        self.parameters = parameters or GatewayParameters()
+        self.clock = clock
+        self.health = HealthBoard(self.parameters.stale_s, clock)
+        self.undecodable = 0
+        self._loop: asyncio.AbstractEventLoop | None = None
+        self._sessions: dict[str, LiveSession] = {}
+        self._poses: dict[str, LatestPose] = {}
+        self._floor_viewers: set[Viewer] = set()
+        self._floor_task: asyncio.Task[None] | None = None
+
+    # Fed by the bus, from any thread.
+
+    def pose(self, session: str, payload: bytes) -> None:
+        """The newest skeleton of a session. Decoded only when somebody looks."""
+        if session in self._sessions:
+            self._poses[session] = LatestPose(payload, self.clock())
+
+    def open(self, description: SessionDescription) -> None:
+        """A session runs. Known ones are left as they are."""
+        self._on_loop(lambda: self._open(description))
+
+    def assign(self, session: str, patient: str | None) -> None:
+        """The session belongs to this patient."""
+        self._on_loop(lambda: self._assign(session, patient))
+
+    def tell(self, session: str, view: View) -> None:
+        """An event of a session, for everybody who watches it. Remembers what a late viewer must know."""
+        self._on_loop(lambda: self._tell(session, view))
+
+    def close(self, session: str, state: str) -> None:
+        """A session is over: viewers are told its state, then let go."""
+        self._on_loop(lambda: self._close(session, state))
+
+    # Asked by routes, on the event loop.
+
+    def bind(self, loop: asyncio.AbstractEventLoop) -> None:
+        """From now on fan out on this loop."""
+        self._loop = loop
+
+    async def stop(self) -> None:
+        """Let all viewers go and end the tasks."""
+        self._loop = None
+        everybody = set(self._floor_viewers).union(*(live.viewers for live in self._sessions.values()))
+        for viewer in everybody:
+            viewer.end()
+        tasks = [live.task for live in self._sessions.values()] + [self._floor_task]
+        for task in filter(None, tasks):
+            task.cancel()
+        await asyncio.gather(*filter(None, tasks), return_exceptions=True)
+
+    @contextlib.contextmanager
+    def watch(self, session: str) -> Iterator[Viewer]:
+        """Watch one session. Raises NotLive or TooManyViewers."""
+        live = self._sessions.get(session)
+        if live is None:
+            raise NotLive(session)
+        viewer = self._new_viewer()
+        live.viewers.add(viewer)
+        for view in (views.session_view(live.description, live.patient), live.metrics, *live.strides.values()):
+            if view is not None:
+                viewer.tell(views.encode(view))
+        if live.task is None:
+            live.task = asyncio.get_running_loop().create_task(self._show_poses(session, live))
+        try:
+            yield viewer
+        finally:
+            live.viewers.discard(viewer)
+            if not live.viewers and live.task is not None:
+                live.task.cancel()
+                live.task = None
+
+    @contextlib.contextmanager
+    def watch_floor(self) -> Iterator[Viewer]:
+        """Watch the list of running sessions. Raises TooManyViewers."""
+        viewer = self._new_viewer()
+        self._floor_viewers.add(viewer)
+        viewer.show("floor", views.encode(self._floor_view()))
+        if self._floor_task is None:
+            self._floor_task = asyncio.get_running_loop().create_task(self._show_floor())
+        try:
+            yield viewer
+        finally:
+            self._floor_viewers.discard(viewer)
+            if not self._floor_viewers and self._floor_task is not None:
+                self._floor_task.cancel()
+                self._floor_task = None
+
+    def is_live(self, session: str) -> bool:
+        """Whether the session runs now."""
+        return session in self._sessions
+
+    def _new_viewer(self) -> Viewer:
+        open_now = len(self._floor_viewers) + sum(len(live.viewers) for live in self._sessions.values())
+        if open_now >= self.parameters.most_viewers:
+            raise TooManyViewers
+        return Viewer(self.parameters.event_queue)
+
+    def _on_loop(self, call: Callable[[], None]) -> None:
+        if self._loop is None:
+            call()
+            return
+        with contextlib.suppress(RuntimeError):  # the loop has just been closed: nobody watches any more
+            self._loop.call_soon_threadsafe(call)
+
+    def _open(self, description: SessionDescription) -> None:
+        self._sessions.setdefault(description.session, LiveSession(description))
+
+    def _assign(self, session: str, patient: str | None) -> None:
+        live = self._sessions.get(session)
+        if live is not None and live.patient != patient:
+            live.patient = patient
+            self._tell(session, {"kind": "patient", "patient": patient})
+
+    def _tell(self, session: str, view: View) -> None:
+        live = self._sessions.get(session)
+        if live is None:
+            return
+        if view["kind"] == "metrics":
+            live.metrics = view
+        elif view["kind"] == "stride":
+            live.strides[view["side"]] = view
+        text = views.encode(view)
+        for viewer in live.viewers:
+            viewer.tell(text)
+
+    def _close(self, session: str, state: str) -> None:
+        live = self._sessions.get(session)
+        if live is None:
+            return
+        self._tell(session, {"kind": "ended", "state": state})
+        for viewer in live.viewers:
+            viewer.end()
+        del self._sessions[session]
+        self._poses.pop(session, None)
+
+    async def _show_poses(self, session: str, live: LiveSession) -> None:
+        shown: LatestPose | None = None
+        beat_s = 0.0
+        while True:
+            latest = self._poses.get(session)
+            if latest is not None and latest is not shown:
+                shown = latest
+                self._show(live.viewers, "pose", self._pose_view(session, latest))
+            if self.clock() - beat_s >= self.parameters.heartbeat_s:
+                beat_s = self.clock()
+                self._show(live.viewers, "status", self._status_view(session))
+            await asyncio.sleep(self.parameters.pose_interval_s)
+
+    async def _show_floor(self) -> None:
+        while True:
+            await asyncio.sleep(self.parameters.floor_interval_s)
+            self._show(self._floor_viewers, "floor", self._floor_view())
+
+    def _show(self, viewers: set[Viewer], slot: str, view: View | None) -> None:
+        if view is not None and viewers:
+            text = views.encode(view)
+            for viewer in viewers:
+                viewer.show(slot, text)
+
+    def _decode(self, session: str, latest: LatestPose) -> LivePose | None:
+        try:
+            return LivePose.model_validate_json(latest.payload)
+        except ValueError:
+            self.undecodable += 1
+            log.warning("event=undecodable_pose session=%s count=%d", session, self.undecodable)
+            return None
+
+    def _pose_view(self, session: str, latest: LatestPose) -> View | None:
+        pose = self._decode(session, latest)
+        return None if pose is None else views.pose_view(pose, self.clock() - latest.received_s)
+
+    def _age_s(self, session: str) -> float | None:
+        latest = self._poses.get(session)
+        return None if latest is None else round(self.clock() - latest.received_s, 2)
+
+    def _status_view(self, session: str) -> View:
+        return {"kind": "status", "age_s": self._age_s(session), **self.health.brief()}
+
+    def _floor_view(self) -> View:
+        cards = [self._card_view(session, live) for session, live in self._sessions.items()]
+        return {"kind": "floor", "sessions": cards, **self.health.brief()}
+
+    def _card_view(self, session: str, live: LiveSession) -> View:
+        latest = self._poses.get(session)
+        pose = None if latest is None else self._decode(session, latest)
+        head = views.session_view(live.description, live.patient)
+        return {
+            **{name: head[name] for name in ("id", "title", "patient", "estimator", "started_unix_s", "duration_s")},
+            "sensor_segments": {sensor["name"]: sensor["segment"] for sensor in head["sensors"]},
+            "age_s": self._age_s(session),
+            "elapsed_s": None if pose is None else views.seconds(pose.captured_ns),
+            "phase": None if pose is None else pose.phase,
+            "message": None if pose is None else pose.message,
+            "sensors": [] if pose is None else views.sensor_views(pose),
+            "cadence_per_min": None if pose is None else pose.cadence_per_min,
+            "strides": sum(view["index"] + 1 for view in live.strides.values()),
+        }

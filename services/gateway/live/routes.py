@@ -1,0 +1,75 @@
+"""The live connections: one session, or the list of all that run."""
+
+import asyncio
+import contextlib
+
+from fastapi import APIRouter, WebSocket, WebSocketDisconnect
+
+from services.gateway.context import Context
+from services.gateway.live.hub import NotLive, TooManyViewers
+from services.gateway.live.viewer import Ended, Overflow, Viewer
+from services.gateway.security import is_same_origin
+
+router = APIRouter(prefix="/v1/live")
+
+NORMAL, POLICY, TRY_AGAIN, NOT_LIVE = 1000, 1008, 1013, 4404
+"""Close codes: over; foreign page; too slow or too many, read by REST; no such session runs now."""
+
+
+@router.websocket("")
+async def watch_floor(socket: WebSocket, gateway: Context) -> None:
+    """The running sessions, twice a second."""
+    await _serve(socket, gateway.live.watch_floor(), gateway.parameters.stall_s)
+
+
+@router.websocket("/{session}")
+async def watch_session(socket: WebSocket, session: str, gateway: Context) -> None:
+    """Skeletons, events and numbers of one running session."""
+    await _serve(socket, gateway.live.watch(session), gateway.parameters.stall_s)
+
+
+async def _serve(socket: WebSocket, watching: contextlib.AbstractContextManager[Viewer], stall_s: float) -> None:
+    if not is_same_origin(socket.headers):
+        await socket.close(POLICY, "open the page from the gateway itself")
+        return
+    await socket.accept()
+    try:
+        with watching as viewer:
+            code, reason = await _until_either_ends(socket, viewer, stall_s)
+    except NotLive:
+        code, reason = NOT_LIVE, "this session does not run now"
+    except TooManyViewers:
+        code, reason = TRY_AGAIN, "too many viewers"
+    with contextlib.suppress(RuntimeError, WebSocketDisconnect, TimeoutError):
+        await asyncio.wait_for(socket.close(code, reason), stall_s)
+
+
+async def _until_either_ends(socket: WebSocket, viewer: Viewer, stall_s: float) -> tuple[int, str]:
+    sending = asyncio.create_task(_send_all(socket, viewer, stall_s))
+    listening = asyncio.create_task(_listen(socket))
+    done, pending = await asyncio.wait({sending, listening}, return_when=asyncio.FIRST_COMPLETED)
+    for task in pending:
+        task.cancel()
+    await asyncio.gather(*pending, return_exceptions=True)
+    return sending.result() if sending in done else (NORMAL, "")
+
+
+async def _send_all(socket: WebSocket, viewer: Viewer, stall_s: float) -> tuple[int, str]:
+    try:
+        while True:
+            text = await viewer.take()
+            await asyncio.wait_for(socket.send_text(text), stall_s)
+    except Ended:
+        return NORMAL, "the session has ended"
+    except Overflow:
+        return TRY_AGAIN, "too slow: read the session again"
+    except TimeoutError:
+        return TRY_AGAIN, "stalled"
+    except (WebSocketDisconnect, RuntimeError):
+        return NORMAL, ""
+
+
+async def _listen(socket: WebSocket) -> None:
+    # Nothing is expected from the page; reading is how a closed connection is noticed.
+    while (await socket.receive())["type"] != "websocket.disconnect":
+        pass

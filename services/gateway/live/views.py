@@ -1,0 +1,128 @@
+"""Messages to a browser as plain values: SI units, seconds instead of nanoseconds. Degrees are the page's business."""
+
+import json
+from typing import Any
+
+from schemas.gait import GaitEvent, Stride
+from schemas.kinematics import LivePose
+from schemas.metrics import Metric, SessionMetrics
+from schemas.session import SessionDescription
+
+View = dict[str, Any]
+
+
+def encode(view: View) -> str:
+    """Compact JSON text; refuses numbers that are not finite."""
+    return json.dumps(view, separators=(",", ":"), allow_nan=False)
+
+
+def seconds(ns: int) -> float:
+    """Session time for a browser, which has no 64-bit integers; 0.1 ms is kept."""
+    return round(ns * 1e-9, 4)
+
+
+def session_view(description: SessionDescription, patient: str | None) -> View:
+    """What a page needs to draw a session, sent once when it starts to watch."""
+    body = description.anthropometry
+    return {
+        "kind": "session",
+        "id": description.session,
+        "title": description.title,
+        "patient": patient,
+        "origin": description.origin,
+        "protocol": description.protocol,
+        "estimator": description.estimator,
+        "started_unix_s": round(description.started_unix_ns * 1e-9, 3),
+        "duration_s": description.duration_s,
+        "sensors": [
+            {"name": sensor.name, "segment": sensor.segment.value, "rate_hz": sensor.rate_hz}
+            for hub in description.hubs
+            for sensor in hub.sensors
+        ],
+        "body": {
+            "thigh_length_m": body.thigh_length_m,
+            "shank_length_m": body.shank_length_m,
+            "hip_width_m": body.hip_width_m,
+        },
+    }
+
+
+def pose_view(pose: LivePose, age_s: float) -> View:
+    """One skeleton. `age_s`: how long the gateway has had it."""
+    return {
+        "kind": "pose",
+        "at_s": seconds(pose.captured_ns),
+        "age_s": round(age_s, 3),
+        "phase": pose.phase,
+        "message": pose.message,
+        "segments": {
+            each.segment.value: {
+                "position": _rounded(each.position),
+                "quat_world_from_segment": _rounded(each.quat_world_from_segment),
+                "valid": each.valid,
+            }
+            for each in pose.segments
+        },
+        "angles": {name: round(value, 5) for name, value in pose.angles.items()},
+        "angles_std": {name: round(value, 5) for name, value in pose.angles_std.items()},
+        "sensors": sensor_views(pose),
+        "cadence_per_min": pose.cadence_per_min,
+    }
+
+
+def sensor_views(pose: LivePose) -> list[View]:
+    """State of each sensor."""
+    return [
+        {"sensor": each.sensor, "state": each.state.value, "since_s": seconds(each.since_ns)} for each in pose.sensors
+    ]
+
+
+def event_view(event: GaitEvent) -> View:
+    """A contact."""
+    return {
+        "kind": "gait_event",
+        "event": event.kind.value,
+        "side": event.side.value,
+        "at_s": seconds(event.captured_ns),
+        "time_std_s": event.time_std_s,
+    }
+
+
+def stride_view(stride: Stride) -> View:
+    """A stride without its curves."""
+    return {
+        "kind": "stride",
+        "side": stride.side.value,
+        "index": stride.index,
+        "start_s": seconds(stride.start_ns),
+        "end_s": seconds(stride.end_ns),
+        "stride_time_s": stride.stride_time_s,
+        "stance_fraction": stride.stance_fraction,
+        "step_time_s": stride.step_time_s,
+        "step_length_m": stride.step_length_m,
+        "step_length_std_m": stride.step_length_std_m,
+        "stride_length_m": stride.stride_length_m,
+        "walking_speed": stride.walking_speed,
+        "turning": stride.turning,
+        "valid": stride.valid,
+        "rejected_because": stride.rejected_because,
+    }
+
+
+def metrics_view(metrics: SessionMetrics) -> View:
+    """The session in numbers so far; its curves are read by REST."""
+    return {
+        "kind": "metrics",
+        "at_s": seconds(metrics.captured_ns),
+        "final": metrics.final,
+        "metrics": [_metric_view(metric) for metric in metrics.metrics],
+    }
+
+
+def _metric_view(metric: Metric) -> View:
+    return metric.model_dump(mode="json")
+
+
+def _rounded(values: list[float]) -> list[float]:
+    # 0.1 mm and 0.01 degrees: far below what can be seen, and half the text.
+    return [round(value, 4) for value in values]

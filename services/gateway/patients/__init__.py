@@ -1,0 +1,1 @@
+"""Patients under random codes."""

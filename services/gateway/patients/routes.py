@@ -1,0 +1,55 @@
+"""REST of patients."""
+
+from http import HTTPStatus
+
+from fastapi import APIRouter
+from sqlalchemy.orm import Session
+
+from services.gateway.context import Context, Limit, Offset, PatientCode
+from services.gateway.patients import records
+from services.gateway.patients.models import PatientChange, PatientIn, PatientOut, PatientPage
+from services.gateway.problems import documented
+from services.gateway.tables import PatientRow
+
+router = APIRouter(prefix="/v1/patients", tags=["patients"])
+
+
+@router.post("", status_code=HTTPStatus.CREATED, responses=documented())
+def create_patient(body: PatientIn, gateway: Context) -> PatientOut:
+    """Register a patient; the answer has the random code to write on the chart."""
+    with gateway.database.transaction() as database:
+        return _shape(database, [records.add_patient(database, body.year_of_birth)])[0]
+
+
+@router.get("", responses=documented())
+def list_patients(gateway: Context, offset: Offset = 0, limit: Limit = 50) -> PatientPage:
+    """List the patients, newest first."""
+    with gateway.database.transaction() as database:
+        total, rows = records.list_patients(database, offset, limit)
+        return PatientPage(total=total, items=_shape(database, rows))
+
+
+@router.get("/{code}", responses=documented(HTTPStatus.NOT_FOUND))
+def read_patient(code: PatientCode, gateway: Context) -> PatientOut:
+    """One patient."""
+    with gateway.database.transaction() as database:
+        return _shape(database, [records.get_patient(database, code)])[0]
+
+
+@router.patch("/{code}", responses=documented(HTTPStatus.NOT_FOUND))
+def change_patient(code: PatientCode, body: PatientChange, gateway: Context) -> PatientOut:
+    """Correct the year of birth, or take it out with null."""
+    with gateway.database.transaction() as database:
+        row = records.get_patient(database, code)
+        row.year_of_birth = body.year_of_birth
+        return _shape(database, [row])[0]
+
+
+def _shape(database: Session, rows: list[PatientRow]) -> list[PatientOut]:
+    counts = records.count_sessions(database, [row.code for row in rows])
+    return [
+        PatientOut(
+            code=row.code, year_of_birth=row.year_of_birth, created=row.created, sessions=counts.get(row.code, 0)
+        )
+        for row in rows
+    ]

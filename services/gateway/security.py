@@ -1,0 +1,109 @@
+"""Response headers, and the bounds on what a client may send. Plain ASGI, so sockets and files are covered too."""
+
+from http import HTTPStatus
+
+from starlette.datastructures import Headers, MutableHeaders
+from starlette.types import ASGIApp, Message, Receive, Scope, Send
+
+from services.gateway.headers import HEADERS
+from services.gateway.problems import problem_response
+
+
+class SecurityHeaders:
+    """Puts the headers on every HTTP response; API answers are never stored by a browser."""
+
+    def __init__(self, app: ASGIApp) -> None:
+        self.app = app
+
+    async def __call__(self, scope: Scope, receive: Receive, send: Send) -> None:
+        """ASGI entry."""
+        if scope["type"] != "http":
+            await self.app(scope, receive, send)
+            return
+
+        async def send_with_headers(message: Message) -> None:
+            if message["type"] == "http.response.start":
+                headers = MutableHeaders(scope=message)
+                headers.update(HEADERS)
+                headers["Cache-Control"] = "no-store" if scope["path"].startswith("/v1/") else "no-cache"
+            await send(message)
+
+        await self.app(scope, receive, send_with_headers)
+
+
+class BodyTooLarge(Exception):
+    """More bytes came than a request may have."""
+
+
+class BodyLimit:
+    """Refuses request bodies past a bound, announced or not."""
+
+    def __init__(self, app: ASGIApp, most_bytes: int) -> None:
+        self.app = app
+        self.most_bytes = most_bytes
+
+    async def __call__(self, scope: Scope, receive: Receive, send: Send) -> None:
+        """ASGI entry."""
+        if scope["type"] != "http":
+            await self.app(scope, receive, send)
+            return
+        announced = Headers(scope=scope).get("content-length", "0")
+        if not announced.isdigit() or int(announced) > self.most_bytes:
+            await self._refuse(scope, receive, send)
+            return
+        taken = 0
+
+        async def receive_counted() -> Message:
+            nonlocal taken
+            message = await receive()
+            taken += len(message.get("body", b""))
+            if taken > self.most_bytes:
+                raise BodyTooLarge
+            return message
+
+        try:
+            await self.app(scope, receive_counted, send)
+        except BodyTooLarge:
+            await self._refuse(scope, receive, send)
+
+    async def _refuse(self, scope: Scope, receive: Receive, send: Send) -> None:
+        response = problem_response(
+            HTTPStatus.REQUEST_ENTITY_TOO_LARGE,
+            f"A request body may have {self.most_bytes} bytes.",
+            "Send less in one request.",
+        )
+        await response(scope, receive, send)
+
+
+class HostNames:
+    """Answers only to the gateway's own names, so that no foreign page can reach it by renaming (DNS rebinding)."""
+
+    def __init__(self, app: ASGIApp, names: list[str]) -> None:
+        self.app = app
+        self.names = names
+
+    async def __call__(self, scope: Scope, receive: Receive, send: Send) -> None:
+        """ASGI entry."""
+        if scope["type"] not in ("http", "websocket") or "*" in self.names:
+            await self.app(scope, receive, send)
+            return
+        headers = Headers(scope=scope)
+        host = headers.get("host", "")
+        name = host.rpartition(":")[0] if host.rpartition(":")[2].isdigit() else host
+        if name in self.names:
+            await self.app(scope, receive, send)
+        elif scope["type"] == "websocket":
+            await send({"type": "websocket.close", "code": 1008, "reason": "unknown host name"})
+        else:
+            response = problem_response(
+                HTTPStatus.MISDIRECTED_REQUEST,
+                "The gateway does not answer to this host name.",
+                "Open it by its own address, or add the name to AMBULA_HTTP_NAMES.",
+            )
+            await response(scope, receive, send)
+
+
+def is_same_origin(headers: Headers) -> bool:
+    """Whether a socket was opened by a page of this gateway (or by a program, which sends no Origin)."""
+    origin = headers.get("origin")
+    return origin is None or origin.partition("://")[2] == headers.get("host")

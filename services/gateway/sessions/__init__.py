@@ -1,0 +1,1 @@
+"""Sessions: started, stopped, watched and kept."""

@@ -1,0 +1,98 @@
+"""Keeps the database and the screens in step with what the services say about sessions."""
+
+import logging
+import time
+from collections.abc import Callable
+from dataclasses import dataclass, field
+from functools import partial
+
+from sqlalchemy.exc import SQLAlchemyError
+
+from schemas.metrics import SessionMetrics
+from schemas.session import SessionDescription
+from services.gateway.database import Database
+from services.gateway.live import views
+from services.gateway.live.hub import LiveHub
+from services.gateway.parameters import GatewayParameters
+from services.gateway.sessions import records
+from services.gateway.sessions.models import SessionState
+
+log = logging.getLogger(__name__)
+
+VANISHED = "The session ended without final metrics. The recording is kept as far as it came."
+
+
+@dataclass
+class SessionKeeper:
+    """Called from the feed's worker thread only. A database that is away never stops the live views."""
+
+    database: Database
+    live: LiveHub
+    parameters: GatewayParameters = field(default_factory=GatewayParameters)
+    clock: Callable[[], float] = time.monotonic
+    running: set[str] = field(default_factory=set)
+    _gone_since: dict[str, float] = field(default_factory=dict)
+    _unwritten: dict[tuple[str, str], Callable[[], None]] = field(default_factory=dict)
+
+    def adopt_open_sessions(self) -> None:
+        """After a start: sessions the database believes to run must show up soon, or count as gone."""
+        with self.database.transaction() as database:
+            for session in records.open_sessions(database):
+                self._gone_since.setdefault(session, self.clock())
+
+    def appeared(self, description: SessionDescription) -> None:
+        """An ingest runs this session."""
+        self.running.add(description.session)
+        self._gone_since.pop(description.session, None)
+        self.live.open(description)
+        self._write((description.session, "start"), lambda: self._record_start(description))
+
+    def measured(self, session: str, metrics: SessionMetrics) -> None:
+        """Metrics came; final ones are the end of the session."""
+        self.live.tell(session, views.metrics_view(metrics))
+        self._write((session, "metrics"), lambda: self._record_metrics(session, metrics))
+        if metrics.final:
+            self._gone_since.pop(session, None)
+            self.live.close(session, SessionState.FINISHED)
+
+    def gone(self, session: str) -> None:
+        """The ingest let go of the session; its final metrics may still be on their way."""
+        self.running.discard(session)
+        self._gone_since[session] = self.clock()
+
+    def missing(self) -> list[str]:
+        """Sessions that are gone and whose final metrics have not come."""
+        return list(self._gone_since)
+
+    def settle(self) -> None:
+        """Now and then: try again what could not be written, close what has been gone for too long."""
+        waiting, self._unwritten = self._unwritten, {}
+        for key, write in waiting.items():
+            self._write(key, write)
+        limit = self.clock() - self.parameters.final_metrics_grace_s
+        for session in [name for name, since in self._gone_since.items() if since <= limit]:
+            del self._gone_since[session]
+            self._write((session, "end"), partial(self._record_end, session))
+            self.live.close(session, SessionState.INTERRUPTED)
+
+    def _record_start(self, description: SessionDescription) -> None:
+        with self.database.transaction() as database:
+            row = records.record_start(database, description)
+            patient = row.patient_code
+        self.live.assign(description.session, patient)
+
+    def _record_metrics(self, session: str, metrics: SessionMetrics) -> None:
+        with self.database.transaction() as database:
+            records.record_metrics(database, session, metrics)
+
+    def _record_end(self, session: str) -> None:
+        with self.database.transaction() as database:
+            records.record_end(database, session, SessionState.INTERRUPTED, VANISHED)
+
+    def _write(self, key: tuple[str, str], write: Callable[[], None]) -> None:
+        # By key, so that a long outage keeps one write of each kind per session and not one per stride.
+        try:
+            write()
+        except SQLAlchemyError:
+            log.exception("event=not_written session=%s what=%s", *key)
+            self._unwritten[key] = write

@@ -1,0 +1,123 @@
+"""Sessions in the database."""
+
+import secrets
+from datetime import UTC, datetime, timedelta
+from typing import Any
+
+from sqlalchemy import Select, func, select
+from sqlalchemy.orm import Session
+
+from schemas.metrics import SessionMetrics
+from schemas.session import SessionDescription
+from schemas.vocabulary import ESTIMATORS
+from services.gateway.problems import not_found
+from services.gateway.sessions.models import SessionIn, SessionState
+from services.gateway.tables import MetricsRow, SessionRow
+
+DEFAULT_ESTIMATOR = "rhythmic_ekf"
+REASON_LENGTH = 500
+
+
+def new_session_id() -> str:
+    """Random, so that it says nothing and never repeats."""
+    return secrets.token_hex(8)
+
+
+def add_requested(database: Session, session: str, wish: SessionIn) -> SessionRow:
+    """Store the wish to start a session, before an ingest is asked."""
+    row = SessionRow(
+        id=session,
+        patient_code=wish.patient,
+        title=wish.source,
+        protocol="",
+        state=SessionState.CREATED,
+        reason=None,
+        created=datetime.now(UTC),
+        started=None,
+        ended=None,
+        duration_s=None,
+        estimator=wish.estimator or DEFAULT_ESTIMATOR,
+        origin="synthetic" if wish.source.startswith("synthetic:") else "recording",
+        source=wish.source,
+    )
+    database.add(row)
+    return row
+
+
+def record_start(database: Session, description: SessionDescription) -> SessionRow:
+    """Store that a session runs. One that nobody asked for becomes an unassigned session."""
+    row = database.get(SessionRow, description.session)
+    if row is None:
+        row = SessionRow(id=description.session, patient_code=None, created=datetime.now(UTC), source=None)
+        database.add(row)
+    row.title = description.title[:200]
+    row.protocol = description.protocol[:100]
+    row.estimator = description.estimator[:64]
+    row.origin = description.origin
+    row.started = datetime.fromtimestamp(description.started_unix_ns * 1e-9, UTC)
+    if row.state != SessionState.FINISHED:
+        row.state, row.reason, row.ended = SessionState.LIVE, None, None
+        row.duration_s = description.duration_s
+    return row
+
+
+def record_metrics(database: Session, session: str, metrics: SessionMetrics) -> bool:
+    """Keep a session's newest metrics; final ones finish it. False when the session is not known."""
+    row = database.get(SessionRow, session)
+    if row is None:
+        return False
+    if row.metrics is None or metrics.final or not row.metrics.final:
+        stored = MetricsRow(
+            session_id=session,
+            final=metrics.final,
+            received=datetime.now(UTC),
+            body=metrics.model_dump(mode="json"),
+        )
+        database.merge(stored)
+    if metrics.final:
+        row.state, row.reason = SessionState.FINISHED, None
+        row.duration_s = metrics.captured_ns * 1e-9
+        row.ended = (row.started or row.created) + timedelta(seconds=row.duration_s)
+    return True
+
+
+def record_end(database: Session, session: str, state: SessionState, reason: str) -> bool:
+    """Close a session that did not finish by itself. False when it had an end already, or is not known."""
+    row = database.get(SessionRow, session)
+    if row is None or row.state not in (SessionState.CREATED, SessionState.LIVE):
+        return False
+    row.state, row.reason, row.ended = state, reason[:REASON_LENGTH], datetime.now(UTC)
+    return True
+
+
+def get_session(database: Session, session: str) -> SessionRow:
+    """Raises a 404 problem when there is none of that id."""
+    row = database.get(SessionRow, session)
+    if row is None:
+        raise not_found("session", session)
+    return row
+
+
+def list_sessions(
+    database: Session, state: SessionState | None, patient: str | None, offset: int, limit: int
+) -> tuple[int, list[SessionRow]]:
+    """Number of all sessions that match, and some of them, newest first."""
+
+    def matching(query: Select[Any]) -> Select[Any]:
+        query = query if state is None else query.where(SessionRow.state == state)
+        return query if patient is None else query.where(SessionRow.patient_code == patient)
+
+    total = database.scalar(matching(select(func.count()).select_from(SessionRow))) or 0
+    order = matching(select(SessionRow)).order_by(SessionRow.created.desc(), SessionRow.id)
+    return total, list(database.scalars(order.offset(offset).limit(limit)))
+
+
+def open_sessions(database: Session) -> list[str]:
+    """Sessions that the database believes to be running."""
+    running = SessionRow.state.in_([SessionState.CREATED, SessionState.LIVE])
+    return list(database.scalars(select(SessionRow.id).where(running)))
+
+
+def known_estimators() -> dict[str, str]:
+    """Name -> what it is, the default first."""
+    return {DEFAULT_ESTIMATOR: ESTIMATORS[DEFAULT_ESTIMATOR]} | ESTIMATORS

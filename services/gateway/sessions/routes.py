@@ -1,0 +1,145 @@
+"""REST of sessions."""
+
+import logging
+from http import HTTPStatus
+from typing import Annotated
+
+from fastapi import APIRouter, Query
+
+from schemas.metrics import SessionMetrics
+from schemas.session import SessionDescription
+from services.gateway.context import Context, Gateway, Limit, Offset, SessionId
+from services.gateway.control import ControlRefused, ControlUnavailable, StartRequest
+from services.gateway.patients.records import get_patient
+from services.gateway.problems import Problem, documented
+from services.gateway.sessions import records, shapes
+from services.gateway.sessions.models import (
+    CurvesOut,
+    MetricsOut,
+    SessionIn,
+    SessionLink,
+    SessionOut,
+    SessionPage,
+    SessionState,
+)
+
+log = logging.getLogger(__name__)
+router = APIRouter(prefix="/v1/sessions", tags=["sessions"])
+
+START_SERVICES = "Start the services with `ambula up`, look at GET /v1/health, then try again."
+CHOOSE_SOURCE = "Choose a source from GET /v1/sources."
+
+
+@router.post(
+    "", status_code=HTTPStatus.CREATED, responses=documented(HTTPStatus.NOT_FOUND, HTTPStatus.SERVICE_UNAVAILABLE)
+)
+def start_session(body: SessionIn, gateway: Context) -> SessionOut:
+    """Store a session and ask an ingest to run it. A session that could not start stays listed as failed."""
+    session = records.new_session_id()
+    with gateway.database.transaction() as database:
+        if body.patient is not None:
+            get_patient(database, body.patient)
+        records.add_requested(database, session, body)
+    description = _ask_for_start(gateway, StartRequest(session, body.source, body.speed, body.estimator))
+    with gateway.database.transaction() as database:
+        row = records.record_start(database, description)
+        database.flush()
+        return shapes.session_out(row)
+
+
+@router.get("", responses=documented())
+def list_sessions(
+    gateway: Context,
+    state: Annotated[SessionState | None, Query(description="only sessions in this state")] = None,
+    patient: Annotated[str | None, Query(description="only sessions of this patient code", max_length=16)] = None,
+    offset: Offset = 0,
+    limit: Limit = 50,
+) -> SessionPage:
+    """List the sessions, newest first."""
+    with gateway.database.transaction() as database:
+        total, rows = records.list_sessions(database, state, patient, offset, limit)
+        return SessionPage(total=total, items=[shapes.session_out(row) for row in rows])
+
+
+@router.get("/{session}", responses=documented(HTTPStatus.NOT_FOUND))
+def read_session(session: SessionId, gateway: Context) -> SessionOut:
+    """One session."""
+    with gateway.database.transaction() as database:
+        return shapes.session_out(records.get_session(database, session))
+
+
+@router.patch("/{session}", responses=documented(HTTPStatus.NOT_FOUND))
+def link_session(session: SessionId, body: SessionLink, gateway: Context) -> SessionOut:
+    """Say to whom a session belongs."""
+    with gateway.database.transaction() as database:
+        row = records.get_session(database, session)
+        if body.patient is not None:
+            get_patient(database, body.patient)
+        row.patient_code = body.patient
+        answer = shapes.session_out(row)
+    gateway.live.assign(session, body.patient)
+    return answer
+
+
+@router.post(
+    "/{session}/stop",
+    status_code=HTTPStatus.ACCEPTED,
+    responses=documented(HTTPStatus.NOT_FOUND, HTTPStatus.CONFLICT, HTTPStatus.SERVICE_UNAVAILABLE),
+)
+def stop_session(session: SessionId, gateway: Context) -> SessionOut:
+    """End a running session; its final metrics follow within seconds."""
+    with gateway.database.transaction() as database:
+        row = records.get_session(database, session)
+        answer = shapes.session_out(row)
+    if answer.state not in (SessionState.CREATED, SessionState.LIVE):
+        raise Problem(
+            HTTPStatus.CONFLICT, f"Session {session} is {answer.state}, not live.", "There is nothing to stop."
+        )
+    try:
+        gateway.control.stop(session)
+    except ControlUnavailable as error:
+        raise Problem(HTTPStatus.SERVICE_UNAVAILABLE, str(error), START_SERVICES) from error
+    except ControlRefused as error:
+        raise Problem(HTTPStatus.CONFLICT, str(error), "Read the session again; it may have ended.") from error
+    return answer
+
+
+@router.get("/{session}/metrics", responses=documented(HTTPStatus.NOT_FOUND))
+def read_metrics(session: SessionId, gateway: Context) -> MetricsOut:
+    """The session in numbers, final or so far."""
+    return shapes.metrics_out(session, _metrics_of(gateway, session))
+
+
+@router.get("/{session}/curves", responses=documented(HTTPStatus.NOT_FOUND))
+def read_curves(session: SessionId, gateway: Context) -> CurvesOut:
+    """Mean curves over the stride with their spread, final or so far."""
+    return shapes.curves_out(session, _metrics_of(gateway, session))
+
+
+def _metrics_of(gateway: Gateway, session: str) -> SessionMetrics:
+    with gateway.database.transaction() as database:
+        metrics = shapes.stored_metrics(records.get_session(database, session))
+    if metrics is None:
+        raise Problem(
+            HTTPStatus.NOT_FOUND,
+            f"Session {session} has no metrics yet.",
+            "They come with the first strides; walk a few steps and read again.",
+        )
+    return metrics
+
+
+def _ask_for_start(gateway: Gateway, request: StartRequest) -> SessionDescription:
+    try:
+        return gateway.control.start(request)
+    except ControlUnavailable as error:
+        _give_up(gateway, request.session, str(error))
+        raise Problem(HTTPStatus.SERVICE_UNAVAILABLE, str(error), START_SERVICES) from error
+    except ControlRefused as error:
+        _give_up(gateway, request.session, str(error))
+        raise Problem(HTTPStatus.UNPROCESSABLE_ENTITY, str(error), CHOOSE_SOURCE) from error
+
+
+def _give_up(gateway: Gateway, session: str, reason: str) -> None:
+    log.info("event=session_not_started session=%s", session)
+    with gateway.database.transaction() as database:
+        records.record_end(database, session, SessionState.FAILED, reason)

@@ -1,0 +1,47 @@
+"""What differs between installations: addresses and places. Read from the environment, `AMBULA_*`."""
+
+from pathlib import Path
+
+from pydantic import Field
+from pydantic_settings import BaseSettings, SettingsConfigDict
+
+DIST = Path(__file__).parent / "static" / "dist"
+"""Where the built pages are."""
+
+LOOPBACK_NAMES = ["127.0.0.1", "localhost", "[::1]"]
+
+
+class GatewaySettings(BaseSettings):
+    """Deployment of one gateway."""
+
+    model_config = SettingsConfigDict(env_prefix="AMBULA_", extra="ignore")
+
+    http_host: str = Field(default="127.0.0.1", description="address to listen on; 0.0.0.0 for every interface")
+    http_port: int = Field(default=8000, ge=0, le=65535, description="port to listen on; 0 for any free one")
+    http_names: list[str] | None = Field(
+        default=None,
+        description="host names a browser may use; unset means the loopback names when listening there, else any",
+    )
+    database: str = Field(default="", description="SQLAlchemy URL; empty for a SQLite file in the data folder")
+    data_dir: Path = Field(default=Path("data"), description="the folder with the archive's recordings")
+    pages_dir: Path = Field(default=DIST, description="the folder with the built pages")
+
+    @property
+    def database_url(self) -> str:
+        """The URL to connect to; plain PostgreSQL addresses are given the driver that is installed."""
+        if not self.database:
+            return f"sqlite:///{self.data_dir / 'ambula.sqlite'}"
+        return self.database.replace("postgresql://", "postgresql+psycopg://", 1)
+
+    @property
+    def url(self) -> str:
+        """What to open in a browser on this machine."""
+        host = "127.0.0.1" if self.http_host in ("0.0.0.0", "::") else self.http_host
+        return f"http://{host}:{self.http_port}"
+
+    @property
+    def host_names(self) -> list[str]:
+        """Names that a Host header may carry; `*` for any."""
+        if self.http_names is not None:
+            return self.http_names
+        return LOOPBACK_NAMES if self.http_host in ("127.0.0.1", "localhost", "::1") else ["*"]

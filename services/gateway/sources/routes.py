@@ -1,0 +1,62 @@
+"""REST of sources."""
+
+from typing import Literal
+
+from fastapi import APIRouter
+from pydantic import BaseModel, ConfigDict, Field
+
+from services.gateway.context import Context
+from services.gateway.control import SYNTHETIC_SOURCES, ControlUnavailable
+from services.gateway.problems import documented
+from services.gateway.sessions.records import DEFAULT_ESTIMATOR, known_estimators
+
+router = APIRouter(prefix="/v1/sources", tags=["sources"])
+
+
+class SourceOut(BaseModel):
+    """Something that can be played."""
+
+    model_config = ConfigDict(extra="forbid")
+
+    id: str = Field(description="to be given to POST /v1/sessions", examples=["synthetic:walk?speed=1.2&seed=1"])
+    title: str = Field(examples=["Walk, comfortable speed"])
+    kind: Literal["recording", "synthetic"]
+    duration_s: float | None = Field(description="s; null when unknown", examples=[120.0])
+
+
+class EstimatorOut(BaseModel):
+    """A selectable estimator."""
+
+    model_config = ConfigDict(extra="forbid")
+
+    name: str = Field(examples=["rhythmic_ekf"])
+    meaning: str = Field(examples=["EKF with the jerk of a rhythm model"])
+    default: bool
+
+
+class SourcesOut(BaseModel):
+    """What can be started now."""
+
+    model_config = ConfigDict(extra="forbid")
+
+    ready: bool = Field(description="an ingest answers, so a session can be started")
+    sources: list[SourceOut]
+    estimators: list[EstimatorOut]
+
+
+@router.get("", responses=documented())
+def list_sources(gateway: Context) -> SourcesOut:
+    """Recordings that the ingest has at hand, and the simulated walkers."""
+    try:
+        recordings, ready = gateway.control.recordings(), True
+    except ControlUnavailable:
+        recordings, ready = [], False
+    sources = [
+        SourceOut(id=each.id, title=each.title, kind=each.kind, duration_s=each.duration_s)
+        for each in (*recordings, *SYNTHETIC_SOURCES)
+    ]
+    estimators = [
+        EstimatorOut(name=name, meaning=meaning, default=name == DEFAULT_ESTIMATOR)
+        for name, meaning in known_estimators().items()
+    ]
+    return SourcesOut(ready=ready, sources=sources, estimators=estimators)

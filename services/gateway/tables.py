@@ -1,0 +1,68 @@
+"""The tables of the gateway: an index over the archive, and the only place where a session meets a patient."""
+
+from datetime import UTC, datetime
+from typing import Any
+
+from sqlalchemy import JSON, DateTime, Dialect, ForeignKey, Integer, String, TypeDecorator
+from sqlalchemy.orm import DeclarativeBase, Mapped, mapped_column, relationship
+
+
+class UtcTime(TypeDecorator[datetime]):
+    """A point in time, always UTC. SQLite forgets the zone; this puts it back."""
+
+    impl = DateTime(timezone=True)
+    cache_ok = True
+
+    def process_bind_param(self, value: datetime | None, dialect: Dialect) -> datetime | None:  # noqa: ARG002
+        """To the database."""
+        return None if value is None else value.astimezone(UTC)
+
+    def process_result_value(self, value: datetime | None, dialect: Dialect) -> datetime | None:  # noqa: ARG002
+        """From the database."""
+        return None if value is None else value.replace(tzinfo=UTC) if value.tzinfo is None else value.astimezone(UTC)
+
+
+class Base(DeclarativeBase):
+    """Base of the mapped classes."""
+
+
+class PatientRow(Base):
+    """A person under a random code. No name, no free text: nothing here identifies anybody."""
+
+    __tablename__ = "patient"
+
+    code: Mapped[str] = mapped_column(String(16), primary_key=True)
+    year_of_birth: Mapped[int | None] = mapped_column(Integer)
+    created: Mapped[datetime] = mapped_column(UtcTime)
+
+
+class SessionRow(Base):
+    """One session, from the wish to start it to its end."""
+
+    __tablename__ = "session"
+
+    id: Mapped[str] = mapped_column(String(64), primary_key=True)
+    patient_code: Mapped[str | None] = mapped_column(ForeignKey("patient.code"), index=True)
+    title: Mapped[str] = mapped_column(String(200))
+    protocol: Mapped[str] = mapped_column(String(100))
+    state: Mapped[str] = mapped_column(String(16), index=True)
+    reason: Mapped[str | None] = mapped_column(String(500))
+    created: Mapped[datetime] = mapped_column(UtcTime, index=True)
+    started: Mapped[datetime | None] = mapped_column(UtcTime)
+    ended: Mapped[datetime | None] = mapped_column(UtcTime)
+    duration_s: Mapped[float | None]
+    estimator: Mapped[str] = mapped_column(String(64))
+    origin: Mapped[str] = mapped_column(String(16))
+    source: Mapped[str | None] = mapped_column(String(300))
+    metrics: Mapped["MetricsRow | None"] = relationship(lazy="selectin")
+
+
+class MetricsRow(Base):
+    """The last metrics message of a session, as it came (schemas.metrics.SessionMetrics)."""
+
+    __tablename__ = "session_metrics"
+
+    session_id: Mapped[str] = mapped_column(ForeignKey("session.id", ondelete="CASCADE"), primary_key=True)
+    final: Mapped[bool]
+    received: Mapped[datetime] = mapped_column(UtcTime)
+    body: Mapped[dict[str, Any]] = mapped_column(JSON)
