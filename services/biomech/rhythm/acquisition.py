@@ -1,0 +1,124 @@
+"""Between searching, locked and standing: what starts a lock, ends it, and keeps the phase reference across."""
+
+from math import pi
+
+import numpy as np
+
+from services.biomech.rhythm.compiled import compiled
+from services.biomech.rhythm.correlator import candidate_stands, find_period, follow_candidate, restart_search
+from services.biomech.rhythm.detection import moves, restart_energies, restart_filters, set_walking_energy
+from services.biomech.rhythm.memory import LOCKED, SEARCHING, STANDING, Bench, Memory
+from services.biomech.rhythm.waveform import best_alignment, project, rotate, usable_harmonics
+
+
+@compiled
+def search(memory: Memory, bench: Bench, dt_s: float) -> None:
+    """Look at the correlation: lock when it has found a period, seed again when the loop has slipped from it."""
+    loop, parameters = memory.loop[0], bench.parameters[0]
+    spacing_s = parameters.searches_every * parameters.grid_interval_s
+    period_s, correlation = find_period(memory, bench)
+    follow_candidate(loop, period_s, correlation, spacing_s, parameters)
+    stands = candidate_stands(loop, parameters)
+    if loop.stage == SEARCHING:
+        if stands and moves(memory.channels, parameters.smallest_rms):
+            seed(memory, bench, period_s, dt_s)
+            loop.stage = LOCKED
+            set_walking_energy(memory.channels, True)
+        return
+    if correlation <= parameters.correlation_to_accept:
+        return
+    if not stands or abs(loop.frequency * period_s / (2.0 * pi) - 1.0) <= parameters.slip_tolerance:
+        loop.slip_s = 0.0
+        return
+    loop.slip_s += spacing_s
+    if loop.slip_s > parameters.slip_periods * period_s:
+        keep_template(memory)
+        seed(memory, bench, period_s, dt_s)
+
+
+@compiled
+def seed(memory: Memory, bench: Bench, period_s: float, dt_s: float) -> None:
+    """Waveform from the last periods; phase aligned with the template so that its reference survives.
+
+    Out of a search the phase goes forward by less than a turn, from a slip it takes the nearer way.
+    """
+    loop, parameters = memory.loop[0], bench.parameters[0]
+    interval_s = parameters.grid_interval_s
+    history = memory.raw_history.shape[1] // 2
+    span_s = parameters.seed_periods * period_s
+    if span_s > min(loop.elapsed_s, (history - 2) * interval_s):
+        span_s = period_s
+    newest = history + (int(loop.grid_count) - 1) % history
+    frequency = 2.0 * pi / period_s
+    harmonics = usable_harmonics(frequency, memory.waveform.shape[2], parameters.highest_harmonic_hz)
+    count = round(span_s / interval_s)
+    project(memory.raw_history, newest, count, interval_s, dt_s, frequency, harmonics, memory.waveform)
+    # The newest cell ended grid_s ago.
+    rotate(memory.waveform, -frequency * loop.grid_s)
+    if loop.has_template > 0.0:
+        turn = best_alignment(memory.template, memory.waveform) - loop.phase
+        turn -= 2.0 * pi * np.floor(turn / (2.0 * pi))
+        loop.phase += turn - 2.0 * pi if loop.stage == LOCKED and turn > pi else turn
+    rotate(memory.waveform, loop.phase)
+    begin_tracking(memory, frequency)
+
+
+@compiled
+def begin_tracking(memory: Memory, frequency: float) -> None:
+    """Start the loop's averages from what the correlation says."""
+    loop = memory.loop[0]
+    loop.frequency = frequency
+    loop.quality = loop.correlation
+    loop.residual_power = 1.0 - loop.correlation
+    loop.signal_power = 1.0
+    loop.since_lock_s = 0.0
+    loop.slip_s = 0.0
+
+
+@compiled
+def keep_template(memory: Memory) -> None:
+    """Remember the waveform: it holds the phase reference for the next seed."""
+    memory.template[:] = memory.waveform
+    memory.loop[0].has_template = 1.0
+
+
+@compiled
+def give_up_lock(memory: Memory) -> None:
+    """Back to searching; the phase stands still from here."""
+    loop = memory.loop[0]
+    loop.stage = SEARCHING
+    loop.quality = 0.0
+    loop.resting_s = 0.0
+    set_walking_energy(memory.channels, False)
+
+
+@compiled
+def resume_search(memory: Memory, credit_s: float) -> None:
+    """The rest is over: a new search, phase and template kept."""
+    restart_search(memory, credit_s)
+    restart_energies(memory.channels)
+    give_up_lock(memory)
+
+
+@compiled
+def stand_still(memory: Memory) -> None:
+    """Freeze phase and waveform until the rest ends."""
+    keep_template(memory)
+    memory.loop[0].stage = STANDING
+    memory.loop[0].quality = 0.0
+
+
+@compiled
+def bridge_gap(memory: Memory, bench: Bench, gap_s: float) -> None:
+    """Nothing is known of the gap: correlation starts again, the phase coasts if it cannot have lost its place."""
+    loop, parameters = memory.loop[0], bench.parameters[0]
+    restart_search(memory, 0.0)
+    restart_filters(memory.channels, bench.velocity)
+    loop.grid_s = 0.0
+    loop.resting_s = 0.0
+    if loop.stage == LOCKED:
+        if gap_s * loop.frequency <= pi:
+            loop.phase += loop.frequency * (gap_s - parameters.nominal_interval_s)
+        else:
+            keep_template(memory)
+            give_up_lock(memory)
