@@ -1,0 +1,97 @@
+"""Messages become arrays, and what cannot be used is counted."""
+
+import numpy as np
+from numpy.typing import NDArray
+
+from schemas.health import Reason, Rejection
+from schemas.kinematics import JointState
+from schemas.rhythm import Rhythm
+from schemas.signals import JOINT_STATE, RHYTHM
+from services.flow.message import Stream
+from services.flow.node import State
+from services.segmentation.history import DOFS, Batch
+
+Array = NDArray[np.float64]
+
+JOINTS_FROM = Stream(JOINT_STATE, "estimation")
+RHYTHM_FROM = Stream(RHYTHM, "estimation")
+
+MOST_ANGLE, MOST_RATE = 1e4, 200.0
+"""rad and rad/s; beyond them a value is no joint coordinate (pelvis_rotation counts whole turns)."""
+
+LATEST_NS = 10**17
+"""ns, three years; a session time beyond it is none."""
+
+
+class Intake:
+    """Checks samples; remembers how many were not used, and why."""
+
+    def __init__(self) -> None:
+        self._newest_ns = -1
+        self._rejected: dict[tuple[str, Reason], int] = {}
+
+    def take(self, joints: JointState, rhythm: Rhythm | None) -> tuple[Batch, Array] | None:
+        """The usable samples of a message and their velocities (n, 15) in rad/s; None when there are none."""
+        rows = len(joints.captured_ns)
+        tables = [_table(values, rows) for values in (joints.position, joints.velocity, joints.position_std)]
+        position, velocity, std = tables
+        if position is None or velocity is None or std is None or not _names_every_dof(joints):
+            self._reject(JOINTS_FROM, Reason.WRONG_SHAPE, rows)
+            return None
+        if max(map(abs, joints.captured_ns)) > LATEST_NS:
+            self._reject(JOINTS_FROM, Reason.OUT_OF_RANGE, rows)
+            return None
+        captured_ns = np.array(joints.captured_ns, dtype=np.int64)
+        newest = np.maximum.accumulate(np.concatenate([[self._newest_ns], captured_ns]))
+        later = captured_ns > newest[:-1]
+        sane = (np.abs(position) < MOST_ANGLE) & (np.abs(velocity) < MOST_RATE) & (np.abs(std) < MOST_ANGLE)
+        use = later & sane.all(axis=1)
+        self._reject(JOINTS_FROM, Reason.CLOCK_BACKWARDS, int(np.sum(~later)))
+        self._reject(JOINTS_FROM, Reason.OUT_OF_RANGE, int(np.sum(later & ~use)))
+        if not use.any():
+            return None
+        self._newest_ns = int(captured_ns[use][-1])
+        phase = self._phase(rhythm, rows)
+        batch = Batch(captured_ns[use], position[use], phase[use], std[use].mean(axis=0), np.array(joints.valid))
+        return batch, velocity[use]
+
+    def _phase(self, rhythm: Rhythm | None, rows: int) -> Array:
+        if rhythm is None:
+            return np.full(rows, np.nan)
+        if len(rhythm.phase) != rows or len(rhythm.locked) != rows:
+            self._reject(RHYTHM_FROM, Reason.WRONG_SHAPE, rows)
+            return np.full(rows, np.nan)
+        return np.where(rhythm.locked, rhythm.phase, np.nan)
+
+    def _reject(self, stream: Stream, reason: Reason, count: int) -> None:
+        if count:
+            key = (stream.name, reason)
+            self._rejected[key] = self._rejected.get(key, 0) + count
+
+    def rejections(self) -> list[Rejection]:
+        """Samples that were not used."""
+        return [
+            Rejection(subject=subject, reason=reason, count=count)
+            for (subject, reason), count in sorted(self._rejected.items())
+        ]
+
+    def snapshot(self) -> State:
+        """The newest time and the counts."""
+        rejected = [[subject, reason.value, count] for (subject, reason), count in self._rejected.items()]
+        return {"newest_ns": self._newest_ns, "rejected": rejected}
+
+    def restore(self, state: State) -> None:
+        """Inverse of `snapshot`."""
+        self._newest_ns = state["newest_ns"]
+        self._rejected = {(subject, Reason(reason)): count for subject, reason, count in state["rejected"]}
+
+
+def _names_every_dof(joints: JointState) -> bool:
+    return joints.model == "lower_body" and len(joints.valid) == DOFS
+
+
+def _table(rows: list[list[float]], count: int) -> Array | None:
+    """Rows as an array (count, DOFS); None when they have another shape."""
+    if len(rows) != count or any(len(row) != DOFS for row in rows):
+        return None
+    return np.array(rows, dtype=np.float64)

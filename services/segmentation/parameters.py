@@ -1,0 +1,76 @@
+"""Everything that can be tuned in segmentation: unit, default, where the default comes from."""
+
+from dataclasses import dataclass
+
+
+@dataclass(frozen=True, slots=True)
+class SegmentationParameters:
+    """Contacts are times at which the ankle turns round relative to the pelvis, plus a constant (Zeni 2008).
+
+    The constants were measured against two force plates: 46 initial contacts and 46 toe-offs of two healthy adults,
+    slow to fast and with an altered gait. The remaining standard deviation was 11 ms for contacts and 16 ms for
+    toe-offs; the deviations below are wider because the joint angles of a session are estimates.
+    """
+
+    contact_after_foremost_s: float = 0.043
+    """s from the foremost ankle to initial contact; force plates."""
+    contact_after_swing_s: float = 0.035
+    """s from the end of the shank's forward rotation to contact, used when the ankle does not turn round (the step
+    that comes to rest beside the other foot); force plates."""
+    toe_off_after_hindmost_s: float = 0.042
+    """s from the hindmost ankle to toe-off; force plates."""
+    contact_std_s: float = 0.02
+    """s, one standard deviation of a contact."""
+    resting_contact_std_s: float = 0.05
+    """s, the same for a contact placed by the end of the rotation; 19 ms on the plates, but in steps that go on."""
+    toe_off_std_s: float = 0.03
+    """s, one standard deviation of a toe-off."""
+
+    swing_angle_floor: float = 0.15
+    """rad of forward shank rotation that no swing stays below; smaller movements are shuffles (proposal)."""
+    swing_angle_fraction: float = 0.2
+    """share of the person's own median swing rotation that a swing must reach; the inner foot of a turn made 0.27."""
+    swing_rate_floor: float = 0.8
+    """rad/s that the shank must reach in swing; sitting down stays below it, slow patients reach 1.5 (proposal)."""
+    swing_memory: int = 7
+    """swings whose median is the person's own."""
+    swing_end_rate: float = 0.1
+    """rad/s backward at which the forward rotation has ended; above the noise of a standing leg."""
+    most_swing_s: float = 2.0
+    """s after which a forward rotation is no swing."""
+    hindmost_search_s: float = 0.5
+    """s before the rotation starts in which the ankle is hindmost."""
+    turn_round_share: float = 0.03
+    """share of the ankle's excursion that it must come back before the foremost point is believed."""
+    turn_round_floor_m: float = 0.005
+    """m, smallest such return."""
+    landing_timeout_s: float = 0.3
+    """s after the end of the rotation: the longest wait for the ankle to turn round."""
+
+    longest_gap_s: float = 0.1
+    """s without samples that a stride may contain."""
+    shortest_stride_s: float = 0.4
+    """s; a cadence of 300 per minute."""
+    longest_stride_s: float = 4.0
+    """s; a cadence of 30 per minute, slower than the slowest of the published cohorts (36 per minute). Two contacts
+    further apart are no stride."""
+    pause_s: float = 0.8
+    """s of stillness of both shanks that end a bout of walking."""
+    pause_rate: float = 0.1
+    """rad/s below which a shank is still."""
+    release_delay_s: float = 0.35
+    """s a stride waits for the events of the other foot that still belong to it."""
+    least_phase: float = 0.6
+    """turns of the rhythm in a stride, below which the rhythm saw less than one."""
+    most_phase: float = 1.5
+    """turns of the rhythm above which it saw more than one."""
+    least_step_share: float = 0.15
+    """share of the stride by which the two feet's contacts are apart at least."""
+    turn_limit: float = 0.26
+    """rad (15 deg) of pelvis rotation from contact to contact above which a stride is turning (proposal)."""
+
+    foot_roll_share: float = 0.09
+    """radius on which the foot rolls in stance / leg length: how far the ankle travels per radian of shank
+    rotation between its own contact and the other foot's. 0.09 (0.06-0.12) in ten steps of one healthy adult."""
+    history_margin_s: float = 1.0
+    """s of joint angles kept before the last contact."""

@@ -1,0 +1,182 @@
+"""One leg's swings: when the foot left the ground and when it came down again."""
+
+from dataclasses import asdict, dataclass, field
+from statistics import median
+from typing import NamedTuple
+
+from schemas.vocabulary import GaitEventKind
+from services.flow.node import State
+from services.segmentation.parameters import SegmentationParameters
+
+
+class Contact(NamedTuple):
+    """An event as the detector sees it."""
+
+    kind: GaitEventKind
+    captured_ns: int
+    std_s: float
+
+
+@dataclass
+class Rotation:
+    """Forward rotation of the shank that goes on."""
+
+    start_ns: int
+    angle: float  # rad
+    peak: float  # rad/s
+    last_forward_ns: int
+    ended: bool
+
+
+@dataclass
+class SwingState:
+    """Everything of a detector that changes."""
+
+    last_ns: int | None = None
+    rotation: Rotation | None = None
+    swinging: bool = False
+    toe_off_ns: int = 0
+    hindmost: float = 0.0
+    own_angles: list[float] = field(default_factory=list)
+    trail: list[tuple[int, float]] = field(default_factory=list)
+
+
+class SwingDetector:
+    """Finds swings in the shank's rotation and times them by the ankle.
+
+    A swing is a forward rotation of the shank that is large for this person. Toe-off is timed by the hindmost ankle
+    before it, initial contact by the foremost ankle at its end, both relative to the pelvis: these turning points
+    exist in slow and in asymmetric gait and survive the smoothing of an estimator better than the troughs of the
+    rate do. Toe-off is reported in early swing (about 0.2 s late), contact when the ankle has come back a little or
+    after `landing_timeout_s`.
+    """
+
+    def __init__(self, parameters: SegmentationParameters) -> None:
+        self.parameters = parameters
+        self.state = SwingState()
+
+    @property
+    def rotating(self) -> bool:
+        """The shank has rotated forward by half of what makes a swing, and still does."""
+        rotation = self.state.rotation
+        return rotation is not None and not rotation.ended and rotation.angle > 0.5 * self._swing_angle()
+
+    def step(self, captured_ns: int, rate: float, forward: float, other_rotating: bool) -> Contact | None:
+        """Take the shank rate (rad/s, forward positive) and the ankle's place ahead of the pelvis (m)."""
+        state = self.state
+        dt = 0.0 if state.last_ns is None else (captured_ns - state.last_ns) * 1e-9
+        state.last_ns = captured_ns
+        state.trail.append((captured_ns, forward))
+        self._follow_rotation(captured_ns, rate, dt)
+        if state.swinging:
+            return self._land(captured_ns)
+        self._forget()
+        return self._lift() if not other_rotating else None
+
+    def interrupt(self) -> None:
+        """Samples are missing: what was going on is given up."""
+        memory = self.state.own_angles
+        self.state = SwingState(own_angles=memory)
+
+    def _swing_angle(self) -> float:
+        own, p = self.state.own_angles, self.parameters
+        return max(p.swing_angle_floor, p.swing_angle_fraction * median(own) if own else 0.0)
+
+    def _follow_rotation(self, captured_ns: int, rate: float, dt: float) -> None:
+        state, p = self.state, self.parameters
+        rotation = state.rotation
+        if rotation is None:
+            if rate > 0:
+                state.rotation = Rotation(captured_ns, 0.0, rate, captured_ns, ended=False)
+        elif rate > 0:
+            if not rotation.ended:
+                rotation.angle += rate * dt
+                rotation.peak = max(rotation.peak, rate)
+                rotation.last_forward_ns = captured_ns
+        elif state.swinging:
+            # The rotation is kept until the foot has landed.
+            rotation.ended = True
+        else:
+            rotation.angle += rate * dt
+            if rate < -p.swing_end_rate or rotation.angle <= 0:
+                state.rotation = None
+        if not state.swinging and rotation is not None and captured_ns - rotation.start_ns > p.most_swing_s * 1e9:
+            state.rotation = None
+
+    def _forget(self) -> None:
+        state = self.state
+        begin = state.last_ns if state.rotation is None else state.rotation.start_ns
+        assert begin is not None
+        oldest = begin - int(self.parameters.hindmost_search_s * 1e9)
+        kept = next(i for i, (ns, _) in enumerate(state.trail) if ns >= oldest)
+        del state.trail[:kept]
+
+    def _lift(self) -> Contact | None:
+        state, p = self.state, self.parameters
+        rotation = state.rotation
+        if rotation is None or rotation.angle < self._swing_angle() or rotation.peak < p.swing_rate_floor:
+            return None
+        before = [i for i, (ns, _) in enumerate(state.trail) if ns <= rotation.start_ns]
+        at = min(before, key=lambda i: state.trail[i][1])
+        state.hindmost = state.trail[at][1]
+        state.toe_off_ns = turning_point(state.trail, at) + int(p.toe_off_after_hindmost_s * 1e9)
+        state.swinging = True
+        return Contact(GaitEventKind.TOE_OFF, state.toe_off_ns, p.toe_off_std_s)
+
+    def _land(self, captured_ns: int) -> Contact | None:
+        state, p, rotation = self.state, self.parameters, self.state.rotation
+        assert rotation is not None
+        if captured_ns - rotation.start_ns > (p.most_swing_s + p.landing_timeout_s) * 1e9:
+            self.interrupt()
+            return None
+        if not rotation.ended:
+            return None
+        at = max(range(len(state.trail)), key=lambda i: state.trail[i][1])
+        foremost = state.trail[at][1]
+        back = max(p.turn_round_floor_m, p.turn_round_share * (foremost - state.hindmost))
+        if state.trail[-1][1] < foremost - back:
+            contact_ns = turning_point(state.trail, at) + int(p.contact_after_foremost_s * 1e9)
+            return self._put_down(contact_ns, p.contact_std_s) if contact_ns <= captured_ns else None
+        if captured_ns - rotation.last_forward_ns > p.landing_timeout_s * 1e9:
+            contact_ns = rotation.last_forward_ns + int(p.contact_after_swing_s * 1e9)
+            return self._put_down(contact_ns, p.resting_contact_std_s)
+        return None
+
+    def _put_down(self, contact_ns: int, std_s: float) -> Contact | None:
+        state = self.state
+        assert state.rotation is not None
+        known = state.own_angles[-self.parameters.swing_memory + 1 :]
+        after = [(ns, forward) for ns, forward in state.trail if ns >= contact_ns]
+        toe_off_ns, last_ns = state.toe_off_ns, state.last_ns
+        self.state = SwingState(last_ns=last_ns, own_angles=[*known, state.rotation.angle], trail=after)
+        return Contact(GaitEventKind.INITIAL_CONTACT, contact_ns, std_s) if contact_ns > toe_off_ns else None
+
+    def snapshot(self) -> State:
+        """The state as JSON values."""
+        return asdict(self.state)
+
+    def restore(self, state: State) -> None:
+        """Inverse of `snapshot`."""
+        rotation = state["rotation"]
+        self.state = SwingState(
+            last_ns=state["last_ns"],
+            rotation=None if rotation is None else Rotation(**rotation),
+            swinging=state["swinging"],
+            toe_off_ns=state["toe_off_ns"],
+            hindmost=state["hindmost"],
+            own_angles=list(state["own_angles"]),
+            trail=[(ns, forward) for ns, forward in state["trail"]],
+        )
+
+
+def turning_point(trail: list[tuple[int, float]], at: int) -> int:
+    """Time of the extremum near sample `at` of (ns, value) samples: vertex of the parabola through three samples.
+
+    Exact for evenly spaced samples; never more than half a sample away from `at`.
+    """
+    if not 0 < at < len(trail) - 1:
+        return trail[at][0]
+    (first, a), (middle, b), (last, c) = trail[at - 1 : at + 2]
+    bend = a - 2 * b + c
+    shift = 0.0 if bend == 0 else min(0.5, max(-0.5, 0.5 * (a - c) / bend))
+    return middle + round(shift * 0.5 * (last - first))
