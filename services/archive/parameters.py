@@ -1,0 +1,52 @@
+"""Every tunable of the archive."""
+
+from dataclasses import dataclass
+
+MIB = 1024 * 1024
+GIB = 1024 * MIB
+
+
+@dataclass(frozen=True)
+class ArchiveParameters:
+    """Defaults hold for one clinic floor on one disk."""
+
+    flush_interval_s: float = 0.1
+    """s between two flush + fsync rounds; bounds the loss of a kill (measured: 0.10 s at most)."""
+    rotation_s: float = 600.0
+    """s after which a new file is begun; bounds what one bad disk block can cost."""
+    chunk_bytes: int = MIB
+    """bytes of messages in one chunk of a closed file, before compression."""
+    queue_records: int = 20_000
+    """messages that may wait for the disk: about 10 s of a full floor."""
+    queue_alarm_share: float = 0.5
+    """share of the queue above which the disk is reported as slow."""
+    warn_free_bytes: int = 5 * GIB
+    """bytes free on the disk below which a warning is given."""
+    stop_free_bytes: int = GIB
+    """bytes free below which nothing is recorded any more, so that the database can still write."""
+    disk_check_s: float = 2.0
+    """s between two looks at the free space."""
+    retry_s: float = 1.0
+    """s after a failed write before the recording goes on in a new file."""
+    progress_s: float = 0.1
+    """s between two reports of the durable position."""
+    gone_s: float = 30.0
+    """s without a session's token after which its recording is closed as interrupted."""
+    checkpoint_bytes: int = 16 * MIB
+    """bytes above which a checkpoint is refused."""
+
+
+@dataclass(frozen=True)
+class ReadLimits:
+    """Caps against damaged and hostile files (media type application/vnd.mcap, security considerations)."""
+
+    record_bytes: int = 64 * MIB
+    """largest record taken from a file; ours stay near 1 MiB."""
+    chunk_bytes: int = 64 * MIB
+    """largest chunk after decompression; ours stay near 1 MiB."""
+    open_bytes: int = 256 * MIB
+    """most decompressed data held at once while messages are put in time order."""
+
+
+PARAMETERS = ArchiveParameters()
+LIMITS = ReadLimits()
