@@ -1,0 +1,168 @@
+"""What each metric is: the table that computation, reports and documentation derive from."""
+
+from collections.abc import Callable
+from dataclasses import dataclass
+
+from schemas.gait import Stride
+
+STRIDE_DEFINITION = "A stride lasts from one initial contact of a foot to the next initial contact of the same foot."
+
+Measure = Callable[[Stride], float | None]
+
+
+@dataclass(frozen=True, slots=True)
+class Definition:
+    """One row of the table. `measure` gives the value of one stride; None where the metric rests on others."""
+
+    name: str
+    unit: str
+    per_side: bool
+    sentence: str
+    measure: Measure | None = None
+
+
+def _steps_per_minute(stride: Stride) -> float | None:
+    return 120.0 / stride.stride_time_s
+
+
+def _stance_time(stride: Stride) -> float | None:
+    return None if stride.stance_fraction is None else stride.stance_fraction * stride.stride_time_s
+
+
+def _swing_time(stride: Stride) -> float | None:
+    return None if stride.stance_fraction is None else (1 - stride.stance_fraction) * stride.stride_time_s
+
+
+def _curve(stride: Stride, joint: str) -> list[float] | None:
+    curve = stride.curves.get(f"{joint}_{stride.side}")
+    return None if curve is None else curve.position
+
+
+def _range(joint: str) -> Measure:
+    def measure(stride: Stride) -> float | None:
+        curve = _curve(stride, joint)
+        return None if curve is None else max(curve) - min(curve)
+
+    return measure
+
+
+def _largest(joint: str) -> Measure:
+    def measure(stride: Stride) -> float | None:
+        curve = _curve(stride, joint)
+        return None if curve is None else max(curve)
+
+    return measure
+
+
+def _hip_extension_peak(stride: Stride) -> float | None:
+    curve = _curve(stride, "hip_flexion")
+    return None if curve is None else -min(curve)
+
+
+def _knee_at_contact(stride: Stride) -> float | None:
+    curve = _curve(stride, "knee_flexion")
+    return None if curve is None else curve[0]
+
+
+def _knee_peak_swing(stride: Stride) -> float | None:
+    curve = _curve(stride, "knee_flexion")
+    if curve is None or stride.stance_fraction is None:
+        return None
+    return max(curve[round(100 * stride.stance_fraction) :])
+
+
+STRIDE_METRICS: tuple[Definition, ...] = (
+    Definition("stride_time", "s", False, "Time of a stride, of either foot.", lambda s: s.stride_time_s),
+    Definition("cadence", "steps/min", False, "Two steps per stride time.", _steps_per_minute),
+    Definition(
+        "stride_length",
+        "m",
+        False,
+        "Forward distance between two successive placements of the same foot: the sum of the two steps.",
+        lambda s: s.stride_length_m,
+    ),
+    Definition("walking_speed", "m/s", False, "Stride length / stride time.", lambda s: s.walking_speed),
+    Definition(
+        "step_length",
+        "m",
+        True,
+        "Forward distance from the other foot to this foot at this foot's initial contact; this foot leads.",
+        lambda s: s.step_length_m,
+    ),
+    Definition(
+        "step_time",
+        "s",
+        True,
+        "Time from the other foot's initial contact to this foot's next one; this foot leads.",
+        lambda s: s.step_time_s,
+    ),
+    Definition(
+        "stance_fraction",
+        "1",
+        True,
+        "Share of the stride from initial contact to toe-off of the same foot.",
+        lambda s: s.stance_fraction,
+    ),
+    Definition("stance_time", "s", True, "Time from initial contact to toe-off of the same foot.", _stance_time),
+    Definition("swing_time", "s", True, "Time from toe-off to the next initial contact of the same foot.", _swing_time),
+    Definition("knee_flexion_range", "rad", True, "Largest minus smallest knee flexion.", _range("knee_flexion")),
+    Definition("knee_flexion_at_contact", "rad", True, "Knee flexion at initial contact.", _knee_at_contact),
+    Definition("knee_flexion_peak_swing", "rad", True, "Largest knee flexion after toe-off.", _knee_peak_swing),
+    Definition("hip_flexion_range", "rad", True, "Largest minus smallest hip flexion.", _range("hip_flexion")),
+    Definition("hip_flexion_peak", "rad", True, "Largest hip flexion.", _largest("hip_flexion")),
+    Definition(
+        "hip_extension_peak",
+        "rad",
+        True,
+        "Largest hip extension, the negative of the smallest hip flexion.",
+        _hip_extension_peak,
+    ),
+)
+"""Metrics that every stride has: the mean over the strides is shown."""
+
+RATIO_SUFFIX = "_ratio_larger_to_smaller"
+RATIOS_OF = ("step_length", "step_time", "stance_time", "swing_time", "knee_flexion_range")
+SD_SUFFIX, CV_SUFFIX = "_sd", "_cv"
+VARIABILITY_OF = ("stride_time", "stride_length", "walking_speed", "step_length")
+
+_BY_NAME = {definition.name: definition for definition in STRIDE_METRICS}
+
+RATIOS: tuple[Definition, ...] = tuple(
+    Definition(
+        name + RATIO_SUFFIX,
+        "1",
+        False,
+        f"Symmetry ratio: the larger of the two sides' mean {name} / the smaller; 1 is symmetric.",
+    )
+    for name in RATIOS_OF
+)
+
+VARIABILITY: tuple[Definition, ...] = tuple(
+    definition
+    for name in VARIABILITY_OF
+    for definition in (
+        Definition(
+            name + SD_SUFFIX,
+            _BY_NAME[name].unit,
+            _BY_NAME[name].per_side,
+            f"Standard deviation of {name} over the strides.",
+        ),
+        Definition(
+            name + CV_SUFFIX,
+            "1",
+            _BY_NAME[name].per_side,
+            f"Coefficient of variation of {name}: standard deviation / mean.",
+        ),
+    )
+)
+
+COUNTED, TURNING, REJECTED = "strides_counted", "strides_turning", "strides_rejected"
+
+COUNTS: tuple[Definition, ...] = (
+    Definition(COUNTED, "1", True, "Number of strides that count: valid and straight."),
+    Definition(TURNING, "1", True, "Number of valid strides within which the pelvis turned; they do not count."),
+    Definition(REJECTED, "1", True, "Number of strides that do not count because something about them is wrong."),
+)
+
+METRICS: tuple[Definition, ...] = (*STRIDE_METRICS, *RATIOS, *VARIABILITY, *COUNTS)
+"""All metrics, in the order of every message."""

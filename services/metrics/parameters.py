@@ -1,0 +1,13 @@
+"""Everything that can be tuned in the metrics: unit, default, where the default comes from."""
+
+from dataclasses import dataclass
+
+
+@dataclass(frozen=True, slots=True)
+class MetricsParameters:
+    """How many strides a number must rest on."""
+
+    least_strides: int = 3
+    """strides below which a mean is withheld (proposal; reliable means need 6 of each foot)."""
+    least_strides_for_variability: int = 10
+    """strides below which standard deviation and CV are withheld as metrics (proposal of the clinical conventions)."""
