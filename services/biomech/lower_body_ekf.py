@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 
 from schemas.vocabulary import Segment
 from services.biomech.kernels.step import step
-from services.biomech.kernels.tables import Columns, Motion, Noise, Options, Sensors, Update
+from services.biomech.kernels.tables import Columns, Noise, Options, Sensors, Update, empty_motion
 from services.biomech.lower_body import LowerBodyModel, SensorMount
 
 Array = NDArray[np.float64]
@@ -83,7 +83,7 @@ class LowerBodyEkf:
         self.x = np.zeros((3, n))
         self.P = np.diag(self._start_variance(N))
         self._rest = np.zeros((3, n))
-        self._motion = Motion(np.zeros((n, 3, 3)), *(np.zeros((n, 3)) for _ in range(8)), sensor=np.zeros((3, 3)))
+        self._motion = empty_motion(n)
         self._update = Update(
             np.zeros((S, 6, N)), np.zeros((S, 6)), np.zeros((3, N)), np.zeros(3),
             np.zeros(N), np.zeros((6, N)), np.zeros((6, 6)), np.zeros(6),
@@ -108,6 +108,17 @@ class LowerBodyEkf:
             self.x, self.P, dt_s, jerk, samples, fresh, self.bias, self._rest,
             self.body, self.sensors, self.columns, options, variances, self._motion, self._update,
         )  # fmt: skip
+
+    def settle(self) -> None:
+        """After a time without samples: keep the pose, forget how it moved and how sure it was."""
+        self.x[1:] = 0.0
+        self.P[:] = np.diag(self._start_variance(len(self.P)))
+
+    def loosen(self, joints: Sequence[int]) -> None:
+        """Make the positions of some joints uncertain, so that the next samples may move them."""
+        for joint in joints:
+            column = joint - self.model.first_rotation
+            self.P[column, column] += self.noise.start_position_std**2
 
     def position_std(self) -> Array:
         """(n,) standard deviation of the positions, rad; 0 for translations."""

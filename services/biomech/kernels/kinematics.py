@@ -59,22 +59,22 @@ def accelerate(x: Array, body: Body, motion: Motion) -> None:
         p = body.parent[j]
         a, a_rate = load(motion.axis, j), load(motion.axis_rate, j)
         if p < 0:
-            w, al, O, V, A = zero, zero, zero, zero, zero
+            w, al, origin, V, A = zero, zero, zero, zero, zero
             r = load(body.offset, j)
         else:
             w, al = load(motion.rate, p), load(motion.angular_acceleration, p)
-            O, V, A = load(motion.origin, p), load(motion.origin_velocity, p), load(motion.origin_acceleration, p)
+            origin, V, A = load(motion.origin, p), load(motion.origin_velocity, p), load(motion.origin_acceleration, p)
             r = rotate(motion.rotation, p, load(body.offset, j))
         swing = cross(w, r)
-        O, V = add(O, r), add(V, swing)
+        origin, V = add(origin, r), add(V, swing)
         A = add(A, add(cross(al, r), cross(w, swing)))
         store(motion.axis_acceleration, j, add(cross(al, a), cross(w, a_rate)))
         if j < body.translations:
             # Only at the root, where the parent does not turn: no Coriolis term.
-            O, V, A = add(O, scale(x[0, j], a)), add(V, scale(x[1, j], a)), add(A, scale(x[2, j], a))
+            origin, V, A = add(origin, scale(x[0, j], a)), add(V, scale(x[1, j], a)), add(A, scale(x[2, j], a))
         else:
             al = add(al, add(scale(x[1, j], a_rate), scale(x[2, j], a)))
         store(motion.angular_acceleration, j, al)
-        store(motion.origin, j, O)
+        store(motion.origin, j, origin)
         store(motion.origin_velocity, j, V)
         store(motion.origin_acceleration, j, A)

@@ -1,6 +1,6 @@
 """Predicted samples and their Jacobian rows. World y is up, so gravity appears as +9.81 along y at rest."""
 
-import numpy as np
+import math
 
 from services.biomech.kernels.compiled import inlined, kernel
 from services.biomech.kernels.tables import Array, Body, Motion, Options, Sensors
@@ -122,4 +122,4 @@ def yaw_row(b: int, body: Body, motion: Motion, sign: float, row: Array) -> floa
         d = cross(load(motion.axis, j), c)
         row[column(0, j, t, n)] += sign * (c[2] * d[0] - c[0] * d[2]) / flat
         j = body.parent[j]
-    return np.arctan2(-c[2], c[0])
+    return math.atan2(-c[2], c[0])

@@ -20,7 +20,7 @@ from services.biomech.kernels.measurement import (
     place_sensor,
     yaw_row,
 )
-from services.biomech.kernels.tables import Array, Body, Columns, Motion, Noise, Options, Sensors, Update
+from services.biomech.kernels.tables import Array, Body, Columns, Flags, Motion, Noise, Options, Sensors, Update
 
 
 @kernel
@@ -100,7 +100,7 @@ def update_yaw(P: Array, body: Body, options: Options, motion: Motion, noise: No
 
 @kernel
 def linearise(
-    x: Array, samples: Array, fresh: Array, bias: Array,
+    x: Array, samples: Array, fresh: Flags, bias: Array,
     body: Body, sensors: Sensors, options: Options, motion: Motion, update: Update,
 ) -> None:  # fmt: skip
     """Innovations and Jacobian rows of all fresh sensors at the predicted state."""
@@ -120,7 +120,7 @@ def linearise(
 
 @kernel
 def step(
-    x: Array, P: Array, dt: float, jerk: Array, samples: Array, fresh: Array, bias: Array, rest: Array,
+    x: Array, P: Array, dt: float, jerk: Array, samples: Array, fresh: Flags, bias: Array, rest: Array,
     body: Body, sensors: Sensors, columns: Columns, options: Options, noise: Noise, motion: Motion, update: Update,
 ) -> None:  # fmt: skip
     """Advance the filter by dt >= 0 and fuse one sample of each fresh sensor.

@@ -14,6 +14,7 @@ from numpy.typing import NDArray
 
 Array = NDArray[np.float64]
 Indices = NDArray[np.int64]
+Flags = NDArray[np.bool_]
 
 
 class Body(NamedTuple):
@@ -76,6 +77,12 @@ class Motion(NamedTuple):
     origin_velocity: Array  # (n, 3) m/s
     origin_acceleration: Array  # (n, 3) m/s^2
     sensor: Array  # (3, 3) R_world_from_sensor of the sensor at hand
+
+
+def empty_motion(joints: int) -> Motion:
+    """Room for n joints."""
+    a, b, c, d, e, f, g, h = (np.zeros((joints, 3)) for _ in range(8))
+    return Motion(np.zeros((joints, 3, 3)), a, b, c, d, e, f, g, h, np.zeros((3, 3)))
 
 
 class Update(NamedTuple):

@@ -1,0 +1,155 @@
+"""From the first sample to the calibrated body: wait for standing, then for the first steps."""
+
+from collections.abc import Sequence
+
+import numpy as np
+from numpy.typing import NDArray
+
+from schemas.health import Reason
+from schemas.session import SensorDescription, SessionDescription
+from schemas.vocabulary import ESTIMATORS
+from services.estimation.alignment import Alignment, AxisSearch, FlexionAxis
+from services.estimation.lower_body_filter import Calibrated
+from services.estimation.parameters import EstimationParameters
+from services.estimation.samples import TickBatch, pack_batches, unpack_batches
+from services.estimation.sensor_checks import SensorChecks
+from services.estimation.standing import StandingDetector, StandingReference
+from services.flow.node import State, pack_array, unpack_array
+
+Array = NDArray[np.float64]
+
+
+class Calibrator:
+    """Keeps what may have to be estimated later, until the body is calibrated.
+
+    While the person stands, the last `before_walking_s` are kept. From then on every batch is kept: once the axes are
+    clear (some seconds into the walk) the filter runs over all of them, so nothing of the walk is lost.
+    """
+
+    def __init__(
+        self, description: SessionDescription, sensors: Sequence[SensorDescription], parameters: EstimationParameters
+    ) -> None:
+        if description.estimator not in ESTIMATORS:
+            raise ValueError(f"estimation has no estimator {description.estimator!r}; choose from {list(ESTIMATORS)}")
+        self.sensors = list(sensors)
+        self.parameters = parameters
+        self.standing = StandingDetector(self.sensors, description.standing, parameters.standing)
+        self.batches: list[TickBatch] = []
+        self._looked_ns = 0
+        self._axes: dict[int, FlexionAxis] = {}
+        self._refused: list[int] = []
+
+    @property
+    def reference(self) -> StandingReference | None:
+        """The standing that counts."""
+        return self.standing.reference
+
+    @property
+    def refused(self) -> NDArray[np.bool_]:
+        """(S,) sensors whose gravity was wrong in standing."""
+        count = len(self.sensors)
+        return np.zeros(count, dtype=np.bool_) if self.reference is None else self.reference.wrong_units
+
+    def message(self) -> str:
+        """What the therapist should do now."""
+        if self.reference is None:
+            return "Please stand up straight" if self.standing.is_sitting else "Stand still, upright"
+        wrong = [self.sensors[s].name for s in np.flatnonzero(self.refused)]
+        if wrong:
+            forces = np.linalg.norm(self.reference.mean_force[self.refused], axis=1)
+            values = ", ".join(f"{name} {force:.2f}" for name, force in zip(wrong, forces, strict=True))
+            return f"Wrong units: at rest 9.8 m/s2 is expected, measured {values}"
+        return "Walk a few steps"
+
+    def add(self, batch: TickBatch, checks: SensorChecks) -> Calibrated | None:
+        """Take the next batch; the calibration, once it stands."""
+        for tick in batch.ticks:
+            self.standing.add(tick)
+        self.batches.append(batch)
+        if self.reference is None or self.standing.is_still:
+            self._keep(self.parameters.before_walking_s, batch.captured_ns)
+            self._looked_ns, self._axes = batch.captured_ns, {}
+            return None
+        self._report_units(checks)
+        if batch.captured_ns - self._looked_ns < self.parameters.alignment.look_every_s * 1e9:
+            return None
+        self._looked_ns = batch.captured_ns
+        return self._look(self.reference)
+
+    def finish(self) -> Calibrated | None:
+        """The stream has ended: calibrate with what there is, if there was a standing and a movement."""
+        if self.reference is None or self.standing.is_still or not self._axes:
+            return None
+        return self._calibrated(self.reference, AxisSearch(self.sensors, self.reference, self.parameters.alignment))
+
+    def _keep(self, seconds: float, now_ns: int) -> None:
+        oldest_ns = now_ns - round(seconds * 1e9)
+        first = next((i for i, batch in enumerate(self.batches) if batch.captured_ns >= oldest_ns), 0)
+        del self.batches[:first]
+
+    def _report_units(self, checks: SensorChecks) -> None:
+        refused = [int(s) for s in np.flatnonzero(self.refused)]
+        for s in refused:
+            if s not in self._refused:
+                checks.refuse(self.sensors[s].name, Reason.WRONG_UNITS)
+        self._refused = refused
+
+    def _look(self, reference: StandingReference) -> Calibrated | None:
+        limits = self.parameters.alignment
+        search = AxisSearch(self.sensors, reference, limits)
+        ticks = [tick for batch in self.batches for tick in batch.ticks]
+        if not ticks:
+            return None
+        axes = search.axes(np.array([tick.samples for tick in ticks]), np.array([tick.fresh for tick in ticks]))
+        clear = search.is_clear(axes, self._axes)
+        self._axes = axes
+        if clear:
+            return self._calibrated(reference, search)
+        self._keep(limits.give_up_after_s, self.batches[-1].captured_ns)
+        return None
+
+    def _calibrated(self, reference: StandingReference, search: AxisSearch) -> Calibrated | None:
+        alignment = search.align(self._axes)
+        return Calibrated(alignment, reference.gyro_bias) if alignment.aligned.any() else None
+
+    def snapshot(self) -> State:
+        """Standing, kept batches and the axes of the last look."""
+        axes = sorted(self._axes.items())
+        table = [[*axis.right, axis.ratio, axis.moving_s, axis.fastest, float(axis.sign_is_placed)] for _, axis in axes]
+        return {
+            "standing": self.standing.snapshot(),
+            "batches": pack_batches(self.batches),
+            "looked_ns": self._looked_ns,
+            "axes_of": [s for s, _ in axes],
+            "axes": pack_array(np.array(table).reshape(-1, 7)),
+            "refused": self._refused,
+        }
+
+    def restore(self, state: State) -> None:
+        """Inverse of `snapshot`."""
+        self.standing.restore(state["standing"])
+        self.batches = unpack_batches(state["batches"], len(self.sensors))
+        self._looked_ns, self._refused = state["looked_ns"], list(state["refused"])
+        rows = unpack_array(state["axes"])
+        self._axes = {
+            s: FlexionAxis(row[:3].copy(), float(row[3]), float(row[4]), float(row[5]), bool(row[6]))
+            for s, row in zip(state["axes_of"], rows, strict=True)
+        }
+
+
+def pack_calibrated(calibrated: Calibrated) -> State:
+    """As JSON values, to the bit."""
+    alignment = calibrated.alignment
+    return {
+        "frames": pack_array(alignment.R_segment_from_sensor),
+        "quality": pack_array(alignment.quality),
+        "aligned": [bool(flag) for flag in alignment.aligned],
+        "gyro_bias": pack_array(calibrated.gyro_bias),
+    }
+
+
+def unpack_calibrated(state: State) -> Calibrated:
+    """Inverse of `pack_calibrated`."""
+    aligned = np.array(state["aligned"], dtype=np.bool_)
+    alignment = Alignment(unpack_array(state["frames"]), unpack_array(state["quality"]), aligned)
+    return Calibrated(alignment, unpack_array(state["gyro_bias"]))

@@ -1,0 +1,191 @@
+"""The filter of one session beside its rhythm: ticks in, one row of joint coordinates and rhythm out."""
+
+from dataclasses import dataclass
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from schemas.session import SensorDescription, SessionDescription
+from schemas.vocabulary import LOWER_BODY, Segment
+from services.biomech.lower_body import PARENT_SEGMENT, SEGMENTS, LowerBodyModel, SensorMount, segment_of
+from services.biomech.lower_body_ekf import LowerBodyEkf
+from services.biomech.rhythm.reading import RhythmEstimator, RhythmReading
+from services.biomech.rhythm.trusted import TrustedRhythm
+from services.estimation.alignment import Alignment
+from services.estimation.parameters import FilterParameters
+from services.estimation.samples import Tick
+from services.flow.node import State, pack_array, unpack_array
+
+Array = NDArray[np.float64]
+
+RHYTHM_CHANNELS = ("knee_flexion_right", "knee_flexion_left", "hip_flexion_right", "hip_flexion_left")
+"""Joints whose velocity the rhythm listens to. They share the stride; the pelvis has the step in it."""
+
+
+class Row(NamedTuple):
+    """Estimates at one instant, in the order of LOWER_BODY, and the rhythm."""
+
+    captured_ns: int
+    position: Array  # (15,) rad
+    velocity: Array  # (15,) rad/s
+    acceleration: Array  # (15,) rad/s^2
+    position_std: Array  # (15,) rad
+    velocity_std: Array  # (15,) rad/s
+    rhythm: RhythmReading
+
+
+@dataclass
+class Calibrated:
+    """Standing and alignment, as the filter needs them."""
+
+    alignment: Alignment
+    gyro_bias: Array  # (S, 3) rad/s
+
+
+class LowerBodyFilter:
+    """Extended Kalman filter with an optional rhythm that feeds it the jerk it expects."""
+
+    def __init__(
+        self,
+        description: SessionDescription,
+        sensors: list[SensorDescription],
+        calibrated: Calibrated,
+        parameters: FilterParameters,
+    ) -> None:
+        self.parameters = parameters
+        self.model = LowerBodyModel(
+            description.anthropometry, parameters.measurement.accel_sees_motion, parameters.soft_knees
+        )
+        self._sensors = sensors
+        self._aligned = calibrated.alignment.aligned
+        frames = calibrated.alignment.R_segment_from_sensor
+        mounts = [_mount(sensor, R) for sensor, R in zip(sensors, frames, strict=True)]
+        self.ekf = LowerBodyEkf(self.model, mounts, calibrated.gyro_bias, parameters.measurement, parameters.noise)
+        self._rhythm = TrustedRhythm(len(RHYTHM_CHANNELS))
+        self._rhythm_joints = [self.model.names.index(name) for name in RHYTHM_CHANNELS]
+        self._driver, self._driver_joints = _driver_of(description.estimator, self.model, self._rhythm)
+        self._jerk = np.zeros(len(self.model.dofs))
+        self._last_ns: int | None = None
+        self._heard_ns: list[int] = []
+        self.unseen: frozenset[Segment] = frozenset(SEGMENTS)
+        """Segments without an aligned sensor that spoke of late."""
+
+    def valid(self) -> list[bool]:
+        """Per LOWER_BODY dof: both segments of the joint are seen, and the model has the dof."""
+        valid = []
+        for dof, index in zip(LOWER_BODY, self.model.reported, strict=True):
+            segment = segment_of(dof)
+            pair = {segment, PARENT_SEGMENT.get(segment, segment)}
+            valid.append(bool(index >= 0 and not pair & self.unseen))
+        return valid
+
+    def _listen(self, tick: Tick) -> frozenset[Segment]:
+        """Note who speaks; the segments that nobody speaks for. Everyone is given the start's benefit of the doubt."""
+        if not self._heard_ns:
+            self._heard_ns = [tick.captured_ns] * len(self._sensors)
+        seen = set()
+        for s, sensor in enumerate(self._sensors):
+            if tick.fresh[s]:
+                self._heard_ns[s] = tick.captured_ns
+            spoke = tick.captured_ns - self._heard_ns[s] <= self.parameters.silent_after_s * 1e9
+            if self._aligned[s] and spoke:
+                seen.add(sensor.segment)
+        return frozenset(SEGMENTS) - seen
+
+    def fuse(self, tick: Tick) -> Row:
+        """Advance to the tick and take its samples in."""
+        dt_s = 0.0 if self._last_ns is None else (tick.captured_ns - self._last_ns) / 1e9
+        if dt_s > self.parameters.longest_step_s:
+            self.ekf.settle()
+            self._jerk[:] = 0.0
+        unseen = self._listen(tick)
+        for segment in sorted(self.unseen - unseen):
+            self.ekf.loosen(self.model.joints_of(segment))
+        self.unseen = unseen
+        step_s = dt_s if dt_s <= self.parameters.longest_step_s else 0.0
+        self.ekf.advance(step_s, tick.samples, tick.fresh & self._aligned, self._jerk, self._rest(unseen))
+        reading = self._follow_rhythm(dt_s)
+        self._last_ns = tick.captured_ns
+        return self._row(tick.captured_ns, reading)
+
+    def _rest(self, unseen: frozenset[Segment]) -> Array:
+        """Variances of the pull to zero: soft knees always, and every joint below a segment that is not seen.
+
+        Without it the variance of an unseen joint grows without bound. Its heading is left free: zero means nothing.
+        """
+        p, rest = self.parameters, np.zeros((3, len(self.model.dofs)))
+        for segment in sorted(unseen):
+            joints = self.model.joints_of(segment)
+            rest[:, joints] = np.array(
+                [[p.rest_position_std**2], [p.rest_velocity_std**2], [p.rest_acceleration_std**2]]
+            )
+        if Segment.PELVIS in unseen:
+            rest[0, self.model.first_rotation] = 0.0
+        rest[0, self.model.soft] = p.noise.soft_knee_std**2
+        return rest
+
+    def _follow_rhythm(self, dt_s: float) -> RhythmReading:
+        velocity = self.ekf.x[1]
+        reading = self._rhythm.step(velocity[self._rhythm_joints], dt_s)
+        if self._driver is not None:
+            source = reading if self._driver is self._rhythm else self._driver.step(velocity[self._driver_joints], dt_s)
+            bound = self.parameters.longest_jerk
+            self._jerk[self._driver_joints] = np.clip(source.jerk, -bound, bound)
+        return reading
+
+    def _row(self, captured_ns: int, reading: RhythmReading) -> Row:
+        pick = self.model.reported
+        known = pick >= 0
+        values = (*self.ekf.x, self.ekf.position_std(), self.ekf.velocity_std())
+        columns = [np.where(known, value[pick], 0.0) for value in values]
+        return Row(captured_ns, columns[0], columns[1], columns[2], columns[3], columns[4], reading)
+
+    def snapshot(self) -> State:
+        """State of filter and rhythm."""
+        driven = self._driver is not None and self._driver is not self._rhythm
+        return {
+            "x": pack_array(self.ekf.x),
+            "P": pack_array(self.ekf.P),
+            "jerk": pack_array(self._jerk),
+            "last_ns": self._last_ns,
+            "heard_ns": list(self._heard_ns),
+            "unseen": sorted(self.unseen),
+            "rhythm": self._rhythm.snapshot(),
+            "driver": self._driver.snapshot() if self._driver is not None and driven else None,
+        }
+
+    def restore(self, state: State) -> None:
+        """Inverse of `snapshot`."""
+        self.ekf.x[:] = unpack_array(state["x"])
+        self.ekf.P[:] = unpack_array(state["P"])
+        self._jerk[:] = unpack_array(state["jerk"])
+        self._last_ns = state["last_ns"]
+        self._heard_ns = list(state["heard_ns"])
+        self.unseen = frozenset(Segment(name) for name in state["unseen"])
+        self._rhythm.restore(state["rhythm"])
+        if self._driver is not None and state["driver"] is not None:
+            self._driver.restore(state["driver"])
+
+
+def _mount(sensor: SensorDescription, R_segment_from_sensor: Array) -> SensorMount:
+    at = sensor.position_in_segment
+    return SensorMount(sensor.segment, R_segment_from_sensor, None if at is None else (at[0], at[1], at[2]))
+
+
+def _driver_of(
+    estimator: str, model: LowerBodyModel, rhythm: RhythmEstimator
+) -> tuple[RhythmEstimator | None, list[int]]:
+    """Whose jerk the filter is fed, and for which joints."""
+    if estimator == "ekf":
+        return None, []
+    if estimator == "rhythmic_ekf":
+        return rhythm, [model.names.index(name) for name in RHYTHM_CHANNELS]
+    if estimator == "rhythmic_ekf_joukov":
+        from services.biomech.rhythm.joukov import JoukovOscillator
+
+        # The right knee comes first: its error drives the phase; every joint has its own harmonics.
+        first = model.names.index("knee_flexion_right")
+        joints = [first] + [j for j in range(model.first_rotation, len(model.dofs)) if j != first]
+        return JoukovOscillator(len(joints)), joints
+    raise ValueError(f"estimation has no estimator {estimator!r}")

@@ -1,0 +1,194 @@
+"""Samples of the worn sensors become joint states with their rhythm, a calibration and a picture for the screen."""
+
+import numpy as np
+
+from schemas.health import Rejection
+from schemas.kinematics import Calibration, JointState, SensorAlignment
+from schemas.rhythm import Rhythm
+from schemas.session import SessionDescription
+from schemas.signals import CALIBRATION, JOINT_STATE, LIVE_POSE, RHYTHM, Signal
+from services.biomech.rotations import quaternion_from_matrix
+from services.estimation.calibrator import Calibrator, pack_calibrated, unpack_calibrated
+from services.estimation.intake import Intake
+from services.estimation.live_pose import estimated_pose, sensor_statuses, waiting_pose
+from services.estimation.lower_body_filter import Calibrated, LowerBodyFilter, Row
+from services.estimation.parameters import EstimationParameters
+from services.estimation.samples import TickBatch
+from services.flow.message import Message, Output, Stream
+from services.flow.node import Node, State
+
+MODEL = "lower_body"
+
+
+class EstimationNode:
+    """One session: waits for standing, finds the axes in the first steps, then estimates.
+
+    Every imu message from the start of the walk leads to one joint_state and one rhythm message, those before the
+    calibration all at once when it stands; an imu message without any usable sample leads to none.
+    """
+
+    outputs: tuple[Signal, ...] = (CALIBRATION, JOINT_STATE, RHYTHM, LIVE_POSE)
+
+    def __init__(self, description: SessionDescription, parameters: EstimationParameters | None = None) -> None:
+        self._description = description
+        self._parameters = parameters or EstimationParameters()
+        self._intake = Intake(description, self._parameters)
+        self._calibrator = Calibrator(description, self._intake.sensors, self._parameters)
+        self._calibrated: Calibrated | None = None
+        self._filter: LowerBodyFilter | None = None
+        self._next_live_ns = 0
+
+    @property
+    def streams(self) -> tuple[Stream, ...]:
+        """One imu stream per hub."""
+        return self._intake.streams
+
+    def step(self, message: Message) -> list[Output]:
+        """Take one imu message."""
+        return [output for batch in self._intake.accept(message) for output in self._take(batch)]
+
+    def finish(self) -> list[Output]:
+        """Take what waited, and calibrate with what there is."""
+        outputs = [output for batch in self._intake.finish() for output in self._take(batch)]
+        if self._filter is None:
+            calibrated = self._calibrator.finish()
+            if calibrated is not None:
+                outputs += self._start(calibrated)
+        return outputs
+
+    def rejections(self) -> list[Rejection]:
+        """Counts by sensor and reason."""
+        return self._intake.checks.rejections()
+
+    def _take(self, batch: TickBatch) -> list[Output]:
+        if self._filter is not None:
+            return self._estimate(self._filter, batch)
+        calibrated = self._calibrator.add(batch, self._intake.checks)
+        if calibrated is not None:
+            return self._start(calibrated)
+        return self._wait(batch)
+
+    def _wait(self, batch: TickBatch) -> list[Output]:
+        if not self._is_live_due(batch.captured_ns):
+            return []
+        phase = "waiting" if self._calibrator.reference is None else "calibrating"
+        everyone = np.ones(len(self._intake.sensors), dtype=np.bool_)
+        statuses = sensor_statuses(
+            self._intake.sensors, self._intake.checks, batch.captured_ns, self._calibrator.refused, everyone
+        )
+        pose = waiting_pose(batch.captured_ns, phase, self._calibrator.message(), statuses)
+        return [Output(LIVE_POSE, batch.captured_ns, pose)]
+
+    def _start(self, calibrated: Calibrated) -> list[Output]:
+        """Publish the calibration and catch up with the walk."""
+        self._calibrated = calibrated
+        self._filter = self._new_filter(calibrated)
+        kept = self._calibrator.batches
+        outputs = [Output(CALIBRATION, kept[0].captured_ns, self._describe(calibrated))]
+        while kept:
+            outputs += self._estimate(self._filter, kept.pop(0))
+        return outputs
+
+    def _new_filter(self, calibrated: Calibrated) -> LowerBodyFilter:
+        return LowerBodyFilter(self._description, self._intake.sensors, calibrated, self._parameters.filter)
+
+    def _describe(self, calibrated: Calibrated) -> Calibration:
+        alignment = calibrated.alignment
+        sensors = [
+            SensorAlignment(
+                sensor=sensor.name,
+                segment=sensor.segment,
+                quat_segment_from_sensor=quaternion_from_matrix(alignment.R_segment_from_sensor[s]).tolist(),
+                gyro_bias=calibrated.gyro_bias[s].tolist(),
+                quality=float(alignment.quality[s]),
+            )
+            for s, sensor in enumerate(self._intake.sensors)
+            if alignment.aligned[s]
+        ]
+        return Calibration(
+            model=MODEL,
+            estimator=self._description.estimator,
+            method="standing, marked by the operator + walking" if self._description.standing else "standing+walking",
+            datum="quiet standing: pelvis level, thighs and shanks vertical",
+            quality=min(sensor.quality for sensor in sensors),
+            sensors=sensors,
+        )
+
+    def _estimate(self, running: LowerBodyFilter, batch: TickBatch) -> list[Output]:
+        """Joint states, rhythm and, when its time has come, the picture."""
+        if not batch.ticks:
+            return []
+        rows = [running.fuse(tick) for tick in batch.ticks]
+        return [
+            Output(JOINT_STATE, batch.captured_ns, _joint_state(rows, running.valid())),
+            Output(RHYTHM, batch.captured_ns, _rhythm(rows)),
+            *self._picture(running, rows[-1]),
+        ]
+
+    def _picture(self, running: LowerBodyFilter, row: Row) -> list[Output]:
+        """The picture of the newest row, when its time has come. None while catching up: nobody could watch it."""
+        if self._calibrator.batches or not self._is_live_due(row.captured_ns):
+            return []
+        nobody = np.zeros(len(self._intake.sensors), dtype=np.bool_)
+        refused = self._calibrator.refused
+        assert self._calibrated is not None
+        waiting = nobody | ~self._calibrated.alignment.aligned
+        statuses = sensor_statuses(self._intake.sensors, self._intake.checks, row.captured_ns, refused, waiting)
+        pose = estimated_pose(row, running.model, running.ekf.x[0], running.valid(), running.unseen, statuses)
+        return [Output(LIVE_POSE, row.captured_ns, pose)]
+
+    def _is_live_due(self, captured_ns: int) -> bool:
+        if captured_ns < self._next_live_ns:
+            return False
+        period_ns = round(1e9 / self._parameters.live_rate_hz)
+        self._next_live_ns = (captured_ns // period_ns + 1) * period_ns
+        return True
+
+    def snapshot(self) -> State:
+        """Everything that changes."""
+        return {
+            "intake": self._intake.snapshot(),
+            "calibrator": self._calibrator.snapshot(),
+            "calibrated": None if self._calibrated is None else pack_calibrated(self._calibrated),
+            "filter": None if self._filter is None else self._filter.snapshot(),
+            "next_live_ns": self._next_live_ns,
+        }
+
+    def restore(self, state: State) -> None:
+        """Inverse of `snapshot`, for a node built from the same description and parameters."""
+        self._intake.restore(state["intake"])
+        self._calibrator.restore(state["calibrator"])
+        self._calibrated, self._filter = None, None
+        if state["calibrated"] is not None:
+            self._calibrated = unpack_calibrated(state["calibrated"])
+            self._filter = self._new_filter(self._calibrated)
+            self._filter.restore(state["filter"])
+        self._next_live_ns = state["next_live_ns"]
+
+
+def _joint_state(rows: list[Row], valid: list[bool]) -> JointState:
+    return JointState(
+        model=MODEL,
+        captured_ns=[row.captured_ns for row in rows],
+        position=[row.position.tolist() for row in rows],
+        velocity=[row.velocity.tolist() for row in rows],
+        acceleration=[row.acceleration.tolist() for row in rows],
+        position_std=[row.position_std.tolist() for row in rows],
+        velocity_std=[row.velocity_std.tolist() for row in rows],
+        valid=valid,
+    )
+
+
+def _rhythm(rows: list[Row]) -> Rhythm:
+    return Rhythm(
+        captured_ns=[row.captured_ns for row in rows],
+        phase=[row.rhythm.phase for row in rows],
+        frequency=[row.rhythm.frequency for row in rows],
+        quality=[row.rhythm.quality for row in rows],
+        locked=[row.rhythm.locked for row in rows],
+    )
+
+
+def build(description: SessionDescription) -> Node:
+    """The node of one session with default parameters."""
+    return EstimationNode(description)

@@ -1,0 +1,79 @@
+"""Every tunable of the estimation service."""
+
+from dataclasses import dataclass, field
+
+from services.biomech.lower_body_ekf import MeasurementModel, NoiseModel
+
+
+@dataclass(frozen=True)
+class CheckParameters:
+    """When a sample is not used."""
+
+    largest_rate: float = 40.0  # rad/s, above the range of worn gyroscopes (2000 deg/s = 35 rad/s)
+    largest_force: float = 320.0  # m/s^2, above the range of worn accelerometers (32 g)
+    rate_jump: float = 12.0  # rad/s from one sample to the next; walking stays below 6 at 100 Hz
+    force_jump: float = 120.0  # m/s^2 from one sample to the next; heel strikes at the shank stay below 60
+    stuck_after: int = 25  # identical samples in a row; real sensors have noise in their last digit
+    silent_after_s: float = 0.25  # s without a usable sample until a sensor counts as missing
+    farthest_from_message_s: float = 10.0  # s between a sample and its message; more is a broken time stamp
+
+
+@dataclass(frozen=True)
+class StandingParameters:
+    """What counts as quiet standing."""
+
+    block_s: float = 0.25  # s over which stillness is judged
+    shortest_s: float = 1.0  # s of stillness in a row; the recipe asks for 2 s, more makes bias and datum better
+    still_rate: float = 0.12  # rad/s of the block's mean: gyro bias (0.03) and postural sway (0.1) stay below
+    still_force_std: float = 0.5  # m/s^2 within the block
+    gravity: float = 9.81  # m/s^2
+    gravity_tolerance: float = 0.5  # m/s^2; more is a unit or scale error
+    steepest_thigh: float = (
+        0.7  # |cos| between skin normal and vertical; a sitting thigh is above, a standing one below
+    )
+
+
+@dataclass(frozen=True)
+class AlignmentParameters:
+    """How the flexion axes are found in the first steps."""
+
+    cutoff_hz: float = 10.0  # Hz, gyro low-pass before the principal direction
+    moving_rate: float = 0.5  # rad/s, horizontal rate above which a sample tells an axis
+    shortest_moving_s: float = 1.5  # s of moving samples of each leg sensor
+    swing_rate: float = 1.5  # rad/s that each leg sensor must have reached
+    steadiest_change: float = 0.09  # rad (5 deg) an axis may change between two looks, 0.5 s apart
+    look_every_s: float = 0.5  # s
+    clearest_ratio: float = 0.5  # second to first principal value; more is no axis
+    give_up_after_s: float = 20.0  # s of samples kept; the oldest are dropped, and stay without an estimate
+    placement_decides: float = (
+        0.5  # |cos| between axis and the direction the placement tells, above which it gives the sign
+    )
+
+
+@dataclass(frozen=True)
+class FilterParameters:
+    """The filter beside its noise."""
+
+    measurement: MeasurementModel = field(default_factory=MeasurementModel)
+    noise: NoiseModel = field(default_factory=NoiseModel)
+    soft_knees: bool = True
+    silent_after_s: float = 0.25  # s without a sample until a segment counts as unseen
+    longest_step_s: float = 0.25  # s between samples; after more the filter settles anew, keeping the pose
+    rest_position_std: float = 0.5  # rad at 100 Hz: pull to zero of a joint that no sensor sees
+    rest_velocity_std: float = 2.0  # rad/s at 100 Hz, the same for its velocity
+    rest_acceleration_std: float = 50.0  # rad/s^2 at 100 Hz, the same for its acceleration
+    longest_jerk: float = 2000.0  # rad/s^3, bound on what a rhythm may feed; knee jerk in walking stays below 1500
+
+
+@dataclass(frozen=True)
+class EstimationParameters:
+    """All of them."""
+
+    checks: CheckParameters = field(default_factory=CheckParameters)
+    standing: StandingParameters = field(default_factory=StandingParameters)
+    alignment: AlignmentParameters = field(default_factory=AlignmentParameters)
+    filter: FilterParameters = field(default_factory=FilterParameters)
+    lateness_s: float = 0.04  # s of captured time that one hub may lag behind another before it is not waited for
+    same_tick_s: float = 0.0005  # s, samples closer than this are fused at the time of the earliest
+    before_walking_s: float = 0.5  # s of standing at the start of the estimates: the filter settles in it
+    live_rate_hz: float = 25.0  # Hz of data time

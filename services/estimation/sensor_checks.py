@@ -1,0 +1,113 @@
+"""Which samples may be used, and what state that leaves a sensor in."""
+
+from collections import Counter
+from dataclasses import dataclass, field
+
+import numpy as np
+from numpy.typing import NDArray
+
+from schemas.health import Reason, Rejection
+from schemas.vocabulary import SensorState
+from services.estimation.parameters import CheckParameters
+from services.estimation.samples import FORCE, RATE
+from services.flow.node import State, pack_array, unpack_array
+
+Array = NDArray[np.float64]
+
+
+@dataclass
+class SensorRecord:
+    """What is remembered of one sensor."""
+
+    newest_ns: int | None = None  # of any sample whose clock was right
+    usable_ns: int | None = None  # of the last sample that was used
+    values: Array = field(default_factory=lambda: np.full(6, np.nan))  # last sample, used or not
+    repeats: int = 0  # how often those values came again
+    jumped: bool = False  # the last sample was refused as a jump
+
+
+@dataclass
+class SensorChecks:
+    """Judges samples one by one and counts what it refuses, by subject and reason."""
+
+    names: list[str]
+    parameters: CheckParameters = field(default_factory=CheckParameters)
+    records: list[SensorRecord] = field(default_factory=list)
+    refused: Counter[tuple[str, Reason]] = field(default_factory=Counter)
+
+    def __post_init__(self) -> None:
+        self.records = [SensorRecord() for _ in self.names]
+
+    def refuse(self, subject: str, reason: Reason, count: int = 1) -> None:
+        """Count something that was not used."""
+        self.refused[subject, reason] += count
+
+    def accept(self, sensor: int, captured_ns: int, values: Array, message_ns: int) -> bool:
+        """Whether a sample (6,) may be used."""
+        reason = self._reason(self.records[sensor], captured_ns, values, message_ns)
+        if reason is not None:
+            self.refuse(self.names[sensor], reason)
+            return False
+        self.records[sensor].usable_ns = captured_ns
+        return True
+
+    def _reason(self, record: SensorRecord, captured_ns: int, values: Array, message_ns: int) -> Reason | None:
+        limits = self.parameters
+        if abs(captured_ns - message_ns) > limits.farthest_from_message_s * 1e9:
+            return Reason.OUT_OF_RANGE
+        if record.newest_ns is not None and captured_ns <= record.newest_ns:
+            return Reason.CLOCK_BACKWARDS
+        if not np.isfinite(values).all():
+            return Reason.NOT_FINITE
+        record.newest_ns = captured_ns
+        record.repeats = record.repeats + 1 if np.array_equal(values, record.values) else 0
+        jump = np.abs(values - record.values)
+        record.values = values
+        if np.abs(values[RATE]).max() > limits.largest_rate or np.abs(values[FORCE]).max() > limits.largest_force:
+            return Reason.OUT_OF_RANGE
+        if record.repeats >= limits.stuck_after:
+            return Reason.STUCK
+        # A lone jump is a broken sample; when the next one stays there, it was a real change.
+        jumps = bool(jump[RATE].max() > limits.rate_jump or jump[FORCE].max() > limits.force_jump)
+        record.jumped = jumps and not record.jumped
+        return Reason.OUT_OF_RANGE if record.jumped else None
+
+    def is_silent(self, sensor: int, now_ns: int) -> bool:
+        """No usable sample for so long that its joints are no longer observed."""
+        usable_ns = self.records[sensor].usable_ns
+        return usable_ns is None or now_ns - usable_ns > self.parameters.silent_after_s * 1e9
+
+    def state_of(self, sensor: int, now_ns: int) -> tuple[SensorState, int]:
+        """State and since when, ns of session time."""
+        record = self.records[sensor]
+        if not self.is_silent(sensor, now_ns):
+            return SensorState.OK, record.usable_ns or 0
+        since_ns = record.usable_ns or 0
+        if record.newest_ns is None or now_ns - record.newest_ns > self.parameters.silent_after_s * 1e9:
+            return SensorState.MISSING, since_ns
+        return (SensorState.STUCK if record.repeats >= self.parameters.stuck_after else SensorState.REJECTED), since_ns
+
+    def rejections(self) -> list[Rejection]:
+        """The counts, sorted."""
+        return [
+            Rejection(subject=subject, reason=reason, count=count)
+            for (subject, reason), count in sorted(self.refused.items())
+        ]
+
+    def snapshot(self) -> State:
+        """Records and counts."""
+        return {
+            "values": pack_array(np.array([record.values for record in self.records]).reshape(-1, 6)),
+            "records": [[r.newest_ns, r.usable_ns, r.repeats, r.jumped] for r in self.records],
+            "refused": [[subject, str(reason), count] for (subject, reason), count in sorted(self.refused.items())],
+        }
+
+    def restore(self, state: State) -> None:
+        """Inverse of `snapshot`."""
+        self.records = [
+            SensorRecord(newest_ns, usable_ns, values, repeats, jumped)
+            for (newest_ns, usable_ns, repeats, jumped), values in zip(
+                state["records"], unpack_array(state["values"]), strict=True
+            )
+        ]
+        self.refused = Counter({(subject, Reason(reason)): count for subject, reason, count in state["refused"]})
