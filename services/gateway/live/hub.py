@@ -11,7 +11,7 @@ from schemas.kinematics import LivePose
 from schemas.session import SessionDescription
 from services.gateway.health.board import HealthBoard
 from services.gateway.live import views
-from services.gateway.live.viewer import Viewer
+from services.gateway.live.viewer import GOING_AWAY, NORMAL, Viewer
 from services.gateway.live.views import View
 from services.gateway.parameters import GatewayParameters
 
@@ -96,7 +96,7 @@ class LiveHub:
         self._loop = None
         everybody = set(self._floor_viewers).union(*(live.viewers for live in self._sessions.values()))
         for viewer in everybody:
-            viewer.end()
+            viewer.end(GOING_AWAY, "the gateway stops")
         tasks = [live.task for live in self._sessions.values()] + [self._floor_task]
         for task in filter(None, tasks):
             task.cancel()
@@ -183,7 +183,7 @@ class LiveHub:
             return
         self._tell(session, {"kind": "ended", "state": state})
         for viewer in live.viewers:
-            viewer.end()
+            viewer.end(NORMAL, "the session has ended")
         del self._sessions[session]
         self._poses.pop(session, None)
 

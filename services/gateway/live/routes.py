@@ -7,13 +7,13 @@ from fastapi import APIRouter, WebSocket, WebSocketDisconnect
 
 from services.gateway.context import Context
 from services.gateway.live.hub import NotLive, TooManyViewers
-from services.gateway.live.viewer import Ended, Overflow, Viewer
+from services.gateway.live.viewer import NORMAL, TRY_AGAIN, Ended, Viewer
 from services.gateway.security import is_same_origin
 
 router = APIRouter(prefix="/v1/live")
 
-NORMAL, POLICY, TRY_AGAIN, NOT_LIVE = 1000, 1008, 1013, 4404
-"""Close codes: over; foreign page; too slow or too many, read by REST; no such session runs now."""
+POLICY, NOT_LIVE = 1008, 4404
+"""Close codes beside the viewer's own: a foreign page; no such session runs now."""
 
 
 @router.websocket("")
@@ -59,10 +59,8 @@ async def _send_all(socket: WebSocket, viewer: Viewer, stall_s: float) -> tuple[
         while True:
             text = await viewer.take()
             await asyncio.wait_for(socket.send_text(text), stall_s)
-    except Ended:
-        return NORMAL, "the session has ended"
-    except Overflow:
-        return TRY_AGAIN, "too slow: read the session again"
+    except Ended as end:
+        return end.code, end.reason
     except TimeoutError:
         return TRY_AGAIN, "stalled"
     except (WebSocketDisconnect, RuntimeError):

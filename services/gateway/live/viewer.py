@@ -4,12 +4,17 @@ import asyncio
 from collections import deque
 
 
-class Overflow(Exception):
-    """The browser took no events for so long that some would be lost; it has to read by REST again."""
+NORMAL, GOING_AWAY, TRY_AGAIN = 1000, 1001, 1013
+"""Close codes: the session is over; the gateway stops; too slow, so read by REST and come again."""
 
 
 class Ended(Exception):
-    """Everything has been handed over and nothing more will come."""
+    """Nothing more will come; `code` and `reason` are for the closing handshake."""
+
+    def __init__(self, code: int, reason: str) -> None:
+        super().__init__(reason)
+        self.code = code
+        self.reason = reason
 
 
 class Viewer:
@@ -19,8 +24,7 @@ class Viewer:
         self._event_queue = event_queue
         self._events: deque[str] = deque()
         self._newest: dict[str, str] = {}
-        self._overflowed = False
-        self._ended = False
+        self._ended: Ended | None = None
         self._wake = asyncio.Event()
         self.skipped = 0
 
@@ -32,27 +36,26 @@ class Viewer:
 
     def tell(self, text: str) -> None:
         """An event: each of them matters, and their order."""
-        if len(self._events) >= self._event_queue:
-            self._overflowed = True
-        else:
+        if len(self._events) < self._event_queue:
             self._events.append(text)
-        self._wake.set()
+            self._wake.set()
+        else:
+            self._events.clear()
+            self.end(TRY_AGAIN, "too slow: read the session again")
 
-    def end(self) -> None:
-        """Nothing more will come."""
-        self._ended = True
+    def end(self, code: int, reason: str) -> None:
+        """Nothing more will come. The first reason counts."""
+        self._ended = self._ended or Ended(code, reason)
         self._wake.set()
 
     async def take(self) -> str:
-        """What is to be sent next; waits for it. Raises Overflow, or Ended when all has been taken."""
+        """What is to be sent next; waits for it. Raises Ended when all has been taken."""
         while True:
-            if self._overflowed:
-                raise Overflow
             if self._events:
                 return self._events.popleft()
             if self._newest:
                 return self._newest.pop(next(iter(self._newest)))
-            if self._ended:
-                raise Ended
+            if self._ended is not None:
+                raise self._ended
             self._wake.clear()
             await self._wake.wait()

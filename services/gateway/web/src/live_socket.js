@@ -1,0 +1,68 @@
+// A live connection that comes back by itself, within two seconds of the gateway being there again.
+
+const FIRST_WAIT_MS = 250;
+const LONGEST_WAIT_MS = 1500;
+const SILENCE_MS = 4000;
+
+const NOT_LIVE = 4404;
+const NORMAL = 1000;
+
+/** Calls `onMessage` with each message, `onState(open)` when the line comes or goes, `onEnd` when nothing more will come. */
+export class LiveSocket {
+  constructor(path, { onMessage, onState = () => {}, onEnd = () => {} }) {
+    this.path = path;
+    this.onMessage = onMessage;
+    this.onState = onState;
+    this.onEnd = onEnd;
+    this.wait = FIRST_WAIT_MS;
+    this.closed = false;
+    this.open();
+  }
+
+  open() {
+    const scheme = location.protocol === "https:" ? "wss" : "ws";
+    const socket = new WebSocket(`${scheme}://${location.host}/v1/live${this.path}`);
+    this.socket = socket;
+    this.watchSilence();
+    socket.onopen = () => {
+      this.wait = FIRST_WAIT_MS;
+      this.onState(true);
+    };
+    socket.onmessage = (event) => {
+      this.watchSilence();
+      this.onMessage(JSON.parse(event.data));
+    };
+    socket.onclose = (event) => this.lost(socket, event.code);
+  }
+
+  lost(socket, code) {
+    if (this.closed || socket !== this.socket) return;
+    clearTimeout(this.silence);
+    this.socket = null;
+    if (code === NOT_LIVE || code === NORMAL) {
+      this.close();
+      this.onEnd();
+      return;
+    }
+    this.onState(false);
+    this.timer = setTimeout(() => this.open(), this.wait);
+    this.wait = Math.min(this.wait * 2, LONGEST_WAIT_MS);
+  }
+
+  // A cable that was pulled closes nothing: the gateway speaks twice a second, so longer silence means a dead line.
+  watchSilence() {
+    clearTimeout(this.silence);
+    const socket = this.socket;
+    this.silence = setTimeout(() => {
+      socket.close();
+      this.lost(socket, 1006);
+    }, SILENCE_MS);
+  }
+
+  close() {
+    this.closed = true;
+    clearTimeout(this.timer);
+    clearTimeout(this.silence);
+    this.socket?.close();
+  }
+}

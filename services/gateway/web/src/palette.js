@@ -1,0 +1,15 @@
+// Left red-orange and solid, right blue and dashed: a convention of gait reports, told apart without colour too.
+
+export const LEFT = "#C44E00";
+export const RIGHT = "#0072B2";
+export const SIDE_COLOUR = { left: LEFT, right: RIGHT };
+export const SIDE_DASH = { left: undefined, right: [7, 4] };
+export const INVALID = "#AEB7BD";
+export const INK = "#1C2B33";
+export const SOFT_INK = "#51626C";
+export const GRID = "#E6EBED";
+export const PELVIS = "#44606E";
+export const GHOST = "#CBD4D8";
+
+/** `#rrggbb` with an alpha for bands. */
+export const faint = (colour, alpha) => colour + Math.round(alpha * 255).toString(16).padStart(2, "0");

@@ -1,0 +1,53 @@
+// The display edge: the only place where radians become degrees and fractions per cent.
+
+const DEGREES = 180 / Math.PI;
+
+/** rad to degrees; null stays null. */
+export const degrees = (radians) => (radians === null || radians === undefined ? null : radians * DEGREES);
+
+const SHOWN = {
+  rad: { factor: DEGREES, unit: "°", digits: 1 },
+  "rad/s": { factor: DEGREES, unit: "°/s", digits: 0 },
+  m: { factor: 1, unit: "m", digits: 2 },
+  "m/s": { factor: 1, unit: "m/s", digits: 2 },
+  s: { factor: 1, unit: "s", digits: 2 },
+  fraction: { factor: 100, unit: "%", digits: 0 },
+  dimensionless: { factor: 1, unit: "", digits: 2 },
+  ratio: { factor: 1, unit: "", digits: 2 },
+  "1/min": { factor: 1, unit: "/min", digits: 0 },
+  "steps/min": { factor: 1, unit: "steps/min", digits: 0 },
+};
+
+/** How a unit of the wire is shown: factor, unit, digits. */
+export function shown(unit, name = "") {
+  if (name.endsWith("_fraction")) return SHOWN.fraction;
+  return SHOWN[unit] ?? { factor: 1, unit, digits: 2 };
+}
+
+/** A number for the screen with a true minus sign; a dash for what is not known. */
+export function number(value, digits) {
+  if (value === null || value === undefined || !Number.isFinite(value)) return "–";
+  const text = value.toFixed(digits);
+  return (Number(text) === 0 ? text.replace("-", "") : text).replace("-", "−");
+}
+
+/** Seconds as 1:05. */
+export function clock(seconds) {
+  if (seconds === null || seconds === undefined) return "–";
+  const whole = Math.max(0, Math.floor(seconds));
+  const rest = String(whole % 60).padStart(2, "0");
+  const minutes = Math.floor(whole / 60);
+  return minutes < 60 ? `${minutes}:${rest}` : `${Math.floor(minutes / 60)}:${String(minutes % 60).padStart(2, "0")}:${rest}`;
+}
+
+/** Bytes as kB or MB. */
+export function bytes(count) {
+  if (count < 1e6) return `${number(count / 1e3, 0)} kB`;
+  return `${number(count / 1e6, 1)} MB`;
+}
+
+/** A UTC time of the API in the reader's own zone. */
+export function when(iso) {
+  if (!iso) return "–";
+  return new Date(iso).toLocaleString(undefined, { dateStyle: "medium", timeStyle: "short" });
+}

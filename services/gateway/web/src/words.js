@@ -1,0 +1,98 @@
+// Every sentence about a state, in one place: the same words everywhere. Never normal or abnormal.
+
+const SIDES = { left: "Left", right: "Right" };
+
+/** `shank_left` as "Left shank". */
+export function segmentName(segment) {
+  const [part, side] = segment.split("_");
+  return side in SIDES ? `${SIDES[side]} ${part}` : part.charAt(0).toUpperCase() + part.slice(1);
+}
+
+/** `knee_flexion_left` as ["Knee flexion", "left"]. */
+export function jointName(name) {
+  const side = name.endsWith("_left") ? "left" : name.endsWith("_right") ? "right" : null;
+  const words = (side ? name.slice(0, -side.length - 1) : name).replaceAll("_", " ");
+  return [words.charAt(0).toUpperCase() + words.slice(1), side];
+}
+
+const METRICS = {
+  cadence_steps_per_min: "Cadence",
+  stance_fraction: "Stance",
+  knee_flexion_peak_swing: "Peak knee flexion in swing",
+};
+
+/** Name of a metric for the screen. */
+export function metricName(name) {
+  return METRICS[name] ?? jointName(name)[0];
+}
+
+/** What a sensor's state means to a therapist. */
+export const SENSOR_WORDS = {
+  ok: { word: "Good", tone: "good" },
+  calibrating: { word: "Calibrating", tone: "wait" },
+  missing: { word: "Lost", tone: "lost" },
+  stuck: { word: "Check sensor – it stands still", tone: "check" },
+  rejected: { word: "Check sensor – readings refused", tone: "check" },
+};
+
+const ORDER = { lost: 0, check: 1, wait: 2, good: 3, done: 4 };
+
+/** A number older than this is grey. */
+export const STALE_S = 1;
+
+/**
+ * The one word for a running session, worst thing first.
+ * @param {{age_s: number|null, phase: string|null, sensors: {sensor: string, state: string}[],
+ *   segments: Record<string, string>, silent: string[], heard: boolean}} now
+ * @returns {{word: string, tone: "lost"|"check"|"wait"|"good", light: string}}
+ */
+export function stateOf(now) {
+  const { word, tone } = judge(now);
+  return { word, tone, light: { lost: "Lost", check: "Check sensor", wait: "Wait", good: "Good" }[tone] };
+}
+
+function judge({ age_s, phase, sensors, segments, silent, heard }) {
+  const estimating = !silent.includes("estimation");
+  if (age_s !== null && age_s > STALE_S) {
+    if (heard && !estimating && !silent.includes("archive")) {
+      return { word: "Archive only (recording continues)", tone: "check" };
+    }
+    return { word: `Delayed (${age_s < 100 ? age_s.toFixed(1) : Math.round(age_s)} s)`, tone: age_s > 5 ? "lost" : "check" };
+  }
+  if (age_s === null) return { word: "No data yet", tone: "wait" };
+  const lost = sensors.find((each) => each.state === "missing");
+  if (lost) return { word: `${segmentName(segments[lost.sensor] ?? lost.sensor)} sensor lost`, tone: "lost" };
+  const doubtful = sensors.find((each) => each.state === "stuck" || each.state === "rejected");
+  if (doubtful) return { word: `Check ${segmentName(segments[doubtful.sensor] ?? doubtful.sensor).toLowerCase()} sensor`, tone: "check" };
+  if (phase === "waiting") return { word: "No data yet", tone: "wait" };
+  if (phase === "calibrating") return { word: "Calibrating - stand still", tone: "wait" };
+  return { word: "Live", tone: "good" };
+}
+
+/** Trouble first. */
+export const byTrouble = (a, b) => ORDER[a.tone] - ORDER[b.tone];
+
+/** How long ago data came. */
+export function lastData(age_s) {
+  if (age_s === null) return "no data yet";
+  return `last data ${age_s < 10 ? age_s.toFixed(1) : Math.round(age_s)} s ago`;
+}
+
+/** A stored session's state. */
+export const STORED_WORDS = {
+  created: { word: "Starting", tone: "wait" },
+  live: { word: "Live", tone: "good" },
+  finished: { word: "Finished", tone: "done" },
+  interrupted: { word: "Interrupted", tone: "check" },
+  failed: { word: "Not started", tone: "lost" },
+};
+
+/** What the header says about the line to the gateway and to the services behind it. */
+export function connectionOf(socketOpen, status) {
+  if (!socketOpen) return { word: "Connection lost – trying again", tone: "lost" };
+  if (!status) return { word: "Connecting", tone: "wait" };
+  if (!status.connected) return { word: "No live data – stored sessions can be read", tone: "check" };
+  if (status.silent.includes("archive")) return { word: "Not recording – the archive is silent", tone: "lost" };
+  if (status.silent.length > 0) return { word: `Silent: ${status.silent.join(", ")}`, tone: "check" };
+  return { word: "Connected", tone: "good" };
+}
