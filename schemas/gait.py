@@ -40,7 +40,7 @@ class Stride(Payload):
     stance_fraction: float | None = Field(ge=0, le=1, description="stance time / stride time, dimensionless")
     step_time_s: float | None = Field(description="s, contact of the other foot to this foot's contact at the end")
     step_length_m: float | None = Field(
-        description="m, forward distance between the ankles at the contact that ends the stride; this foot leads"
+        description="m, forward distance from the other foot to this foot at the contact that ends the stride"
     )
     step_length_std_m: float | None = Field(description="m, one standard deviation")
     stride_length_m: float | None = Field(description="m, this step plus the other foot's step within the stride")

@@ -7,18 +7,19 @@ from dataclasses import dataclass
 class SegmentationParameters:
     """Contacts are times at which the ankle turns round relative to the pelvis, plus a constant (Zeni 2008).
 
-    The constants were measured against two force plates: 46 initial contacts and 46 toe-offs of two healthy adults,
-    slow to fast and with an altered gait. The remaining standard deviation was 11 ms for contacts and 16 ms for
-    toe-offs; the deviations below are wider because the joint angles of a session are estimates.
+    The constants rest on two force plates (46 contacts and 46 toe-offs of two healthy adults, slow to fast and with
+    an altered gait: 43 and 42 ms, standard deviation 11 and 16 ms) and on the reviewed events of two other people
+    (14 and 18 events: 36 and 27 ms, standard deviation 11 and 9 ms). The deviations below are wider because the
+    joint angles of a session are estimates.
     """
 
-    contact_after_foremost_s: float = 0.043
-    """s from the foremost ankle to initial contact; force plates."""
+    contact_after_foremost_s: float = 0.04
+    """s from the foremost ankle to initial contact; between the two sources above."""
     contact_after_swing_s: float = 0.035
     """s from the end of the shank's forward rotation to contact, used when the ankle does not turn round (the step
     that comes to rest beside the other foot); force plates."""
-    toe_off_after_hindmost_s: float = 0.042
-    """s from the hindmost ankle to toe-off; force plates."""
+    toe_off_after_hindmost_s: float = 0.037
+    """s from the hindmost ankle to toe-off; between the two sources above."""
     contact_std_s: float = 0.02
     """s, one standard deviation of a contact."""
     resting_contact_std_s: float = 0.05
@@ -69,8 +70,8 @@ class SegmentationParameters:
     turn_limit: float = 0.26
     """rad (15 deg) of pelvis rotation from contact to contact above which a stride is turning (proposal)."""
 
-    foot_roll_share: float = 0.09
+    foot_roll_share: float = 0.08
     """radius on which the foot rolls in stance / leg length: how far the ankle travels per radian of shank
-    rotation between its own contact and the other foot's. 0.09 (0.06-0.12) in ten steps of one healthy adult."""
+    rotation between its own contact and the other foot's. Optical means of three people: 0.09, 0.06, 0.08."""
     history_margin_s: float = 1.0
     """s of joint angles kept before the last contact."""
