@@ -18,9 +18,9 @@ from schemas.session import (
 from schemas.signals import IMU
 from schemas.vocabulary import Segment
 from services.flow.message import Stream
+from services.ingest.data import find_data
 from services.ingest.driver import SourceMessage
 from services.ingest.identity import Identity
-from services.ingest.locations import find_data
 from services.ingest.manifest import HubEntry, Manifest, SensorEntry, load_manifest
 from services.ingest.reference import channels_of, read_reference, reference_track
 from services.ingest.sensor_file import read_sensor
@@ -42,7 +42,8 @@ class Recording:
             for hub in self._manifest.hub
         ]
         truth = [read_reference(self._folder, self._manifest, entry, self._tally) for entry in self._manifest.reference]
-        zero_s = min(part.time_s.min() for part in [*itertools.chain(*raw), *truth])
+        starts = [track.time_s.min() for track in itertools.chain(*raw)] + [table.time_s.min() for table in truth]
+        zero_s = float(min(starts))
         self._hubs = [[track.placed(zero_s) for track in tracks] for tracks in raw]
         self._reference = reference_track(truth, zero_s) if truth else None
 

@@ -5,7 +5,6 @@ from pathlib import Path
 
 import numpy as np
 from numpy.typing import NDArray
-
 from scipy.spatial.transform import Rotation
 
 from schemas.health import Reason

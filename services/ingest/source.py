@@ -4,10 +4,10 @@ from collections.abc import Iterator
 from pathlib import Path
 
 from services.flow.message import Envelope, Message, Stream
+from services.ingest.data import MANIFESTS
 from services.ingest.driver import Source, SourceMessage, streams_of
 from services.ingest.errors import SourceError, UnknownSource
 from services.ingest.identity import Identity
-from services.ingest.locations import MANIFESTS
 from services.ingest.manifest import FILE_NAME
 from services.ingest.recording import Recording
 from services.ingest.synthetic.source import open_synthetic
@@ -46,7 +46,7 @@ def open_source(spec: str, *, session: str | None = None, estimator: str | None 
 
 def iter_messages(source: Source, ticks: int = 1) -> Iterator[Message]:
     """Every message of a source as live publishing sends it: numbered from zero, each stream closed at its end."""
-    sequences = {stream: 0 for stream in streams_of(source.describe())}
+    sequences = dict.fromkeys(streams_of(source.describe()), 0)
     last_ns = dict.fromkeys(sequences, 0)
     for stream, captured_ns, payload in in_batches(source.messages(), ticks):
         yield Message(stream, Envelope(0, sequences[stream], captured_ns), payload)

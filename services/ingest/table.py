@@ -79,7 +79,7 @@ class _BadRows:
             )
 
 
-def read_table(path: Path, columns: Sequence[str], layout: CsvFormat = CsvFormat()) -> Table:  # noqa: B008
+def read_table(path: Path, columns: Sequence[str], layout: CsvFormat = CsvFormat()) -> Table:
     """Read the named columns. Raises a SourceError that names file, line and column."""
     try:
         with _open_text(path) as text:

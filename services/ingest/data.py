@@ -18,6 +18,11 @@ def data_folders() -> list[Path]:
     return ([Path(named)] if named else []) + list(dict.fromkeys(beside))
 
 
+def find_data_root() -> Path | None:
+    """The first of those folders that exists."""
+    return next((folder for folder in data_folders() if folder.is_dir()), None)
+
+
 def find_data(name: str, beside: Path | None = None) -> Path:
     """The folder of a recording: relative to `beside` (the manifest's folder) or to one of `data_folders`.
 

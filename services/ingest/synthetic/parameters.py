@@ -1,0 +1,68 @@
+"""Every dial of the synthetic walker, and how it is written in `synthetic:walk?speed=1.1&seed=3`."""
+
+import dataclasses
+import math
+from dataclasses import dataclass, field
+from typing import Any
+from urllib.parse import parse_qsl
+
+from services.ingest.errors import InvalidOption
+
+
+def _dial(default: float, low: float, high: float, meaning: str) -> Any:
+    return field(default=default, metadata={"low": low, "high": high, "meaning": meaning})
+
+
+@dataclass(frozen=True)
+class WalkParameters:
+    """A walk and the sensors that see it. All in SI; unlikely but possible bodies are allowed, impossible ones not."""
+
+    speed: float = _dial(1.1, 0.3, 1.6, "m/s, mean over a stride on the straight")
+    duration: float = _dial(60.0, 5.0, 8 * 3600.0, "s, standing included")
+    seed: int = _dial(0, 0, 2**31, "of everything random: noise, bias, mounting, wander")
+    asymmetry: float = _dial(0.0, 0.0, 0.5, "share by which the left leg swings less; its steps also come off beat")
+    wander: float = _dial(0.02, 0.0, 0.1, "standard deviation of cadence over time, relative")
+    standing: float = _dial(4.0, 3.0, 600.0, "s of quiet standing at the start")
+    stop_every: float = _dial(0.0, 0.0, 3600.0, "s of walking between stops; 0 never stops")
+    pause: float = _dial(5.0, 1.0, 600.0, "s of standing at each stop and at the end")
+    turn_every: float = _dial(0.0, 0.0, 3600.0, "s from turn to turn; 0 walks straight on")
+    turn_angle: float = _dial(math.pi, 0.0, 2 * math.pi, "rad per turn, to the left and to the right in turn")
+    turn_time: float = _dial(3.0, 1.0, 30.0, "s that a turn takes")
+    rate: float = _dial(100.0, 20.0, 1000.0, "Hz of every sensor")
+    feet: int = _dial(0, 0, 1, "1 adds a sensor on each shoe")
+    truth: int = _dial(1, 0, 1, "0 leaves out the reference stream")
+    gyro_noise: float = _dial(0.005, 0.0, 1.0, "rad/s, standard deviation per sample")
+    accel_noise: float = _dial(0.05, 0.0, 5.0, "m/s^2, standard deviation per sample")
+    gyro_bias: float = _dial(0.01, 0.0, 0.2, "rad/s, standard deviation per axis, constant in a session")
+    accel_bias: float = _dial(0.03, 0.0, 0.3, "m/s^2, standard deviation per axis, constant in a session")
+    mounting: float = _dial(0.26, 0.0, math.pi, "rad, largest rotation of a sensor against its nominal placement")
+    soft_tissue: float = _dial(0.0, 0.0, 0.2, "rad, amplitude of the thigh sensor's wobble; the shank's is 0.4 of it")
+    thigh_length: float = _dial(0.41, 0.2, 0.6, "m, hip centre to knee centre")
+    shank_length: float = _dial(0.40, 0.2, 0.6, "m, knee centre to ankle centre")
+    hip_width: float = _dial(0.18, 0.08, 0.35, "m, between the hip centres")
+
+    @classmethod
+    def parse(cls, query: str) -> "WalkParameters":
+        """From `speed=1.1&seed=3`. Raises InvalidOption for an unknown name, a word, or a value out of range."""
+        try:
+            pairs = parse_qsl(query, keep_blank_values=True, strict_parsing=bool(query), max_num_fields=64)
+        except ValueError as error:
+            raise InvalidOption(f"{query[:80]!r} is no list of options; write speed=1.1&seed=3") from error
+        dials = {dial.name: dial for dial in dataclasses.fields(cls)}
+        values: dict[str, float] = {}
+        for name, text in pairs:
+            if name not in dials:
+                raise InvalidOption(f"synthetic walk has no option {name[:40]!r}; it has {', '.join(dials)}")
+            values[name] = _number(dials[name], text)
+        return cls(**values)  # type: ignore[arg-type]
+
+
+def _number(dial: "dataclasses.Field[Any]", text: str) -> float:
+    low, high = dial.metadata["low"], dial.metadata["high"]
+    try:
+        value: float = int(text) if isinstance(dial.default, int) else float(text)
+    except ValueError as error:
+        raise InvalidOption(f"{dial.name}={text[:40]!r} is not a number; it is {dial.metadata['meaning']}") from error
+    if not low <= value <= high:
+        raise InvalidOption(f"{dial.name}={value:g} is outside {low:g} .. {high:g} ({dial.metadata['meaning']})")
+    return value
