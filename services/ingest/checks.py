@@ -19,6 +19,7 @@ class PlausibilityLimits:
 
     gravity_tolerance: float = 0.5  # m/s^2
     still_spread: float = 0.05  # of the mean: specific force may vary by this within the quietest second
+    motionless_spread: float = 0.015  # of the mean: below it a body part hardly turns either
     turning_when_still: float = 0.1  # rad/s, mean norm within the quietest second
     fastest_turn: float = 45.0  # rad/s; gait sensors end at 35 (2000 deg/s), feet reach 33
     tilt_to_explain: float = 0.35  # rad: gravity must have turned by this before a gyro can be called too small
@@ -49,8 +50,8 @@ def check_units(
     if spread[quietest] > limits.still_spread * gravity:
         return
     _check_gravity(where, gravity, units.specific_force, limits)
-    still = samples.angular_velocity[quietest : quietest + width]
-    _check_stillness(where, float(np.linalg.norm(still, axis=1).mean()), units.angular_velocity, limits)
+    if spread[quietest] < limits.motionless_spread * gravity:
+        _check_stillness(where, samples.angular_velocity[quietest : quietest + width], units.angular_velocity, limits)
     _check_tilt_explained(where, mean, samples.angular_velocity, rate_hz, units.angular_velocity, limits)
 
 
@@ -77,7 +78,8 @@ def _check_gravity(where: str, gravity: float, unit: str, limits: PlausibilityLi
     )
 
 
-def _check_stillness(where: str, turning: float, unit: str, limits: PlausibilityLimits) -> None:
+def _check_stillness(where: str, still: Values, unit: str, limits: PlausibilityLimits) -> None:
+    turning = float(np.linalg.norm(still, axis=1).mean())
     if turning <= limits.turning_when_still:
         return
     raise WrongUnits(
