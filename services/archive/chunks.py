@@ -43,7 +43,6 @@ class RawMessage(NamedTuple):
     publish_time: int
     data: bytes
 
-
     @property
     def clock(self) -> str:
         """Name of what it must not overtake: its stream, also for the end of one. Raises ValueError."""

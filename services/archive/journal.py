@@ -79,14 +79,13 @@ class Journal:
         self._size = 0
         self._unsynced = False
         self._descriptor = disk.create(path)
-        disk.sync_folder(path.parent)
-        self._append(self._opening(software))
-        started = log_time_ns(description, 0)
-        self._add(
-            self._channel(SESSION_TOPIC, SESSION.name, SESSION.model, 0, SCHEMA_VERSION),
-            (0, started, started),
-            description.model_dump_json().encode(),
-        )
+        try:
+            disk.sync_folder(path.parent)
+            self._append(self._opening(software))
+            self._describe()
+        except OSError:
+            self.close()
+            raise
 
     def fits(self, record: Record) -> bool:
         """Whether MCAP, and a reader with our limits, can hold the message."""
@@ -112,17 +111,29 @@ class Journal:
         channel = self._channel(name, signal.name, signal.model, envelope.epoch, envelope.schema_version)
         self._add(channel, self._times(envelope, received_unix_ns), payload.model_dump_json().encode())
 
-    def flush(self) -> None:
-        """Write what waits as one chunk and wait until it is on the disk."""
+    def push(self) -> None:
+        """Hand what waits to the operating system, as one chunk: a kill cannot take it any more."""
         if self._messages:
             self._append(self._cut())
-        if self._unsynced:
-            self._disk.sync(self._descriptor)
-            self._unsynced = False
+
+    @property
+    def unsynced(self) -> bool:
+        """Whether something was pushed that a power cut could take."""
+        return self._unsynced
+
+    def sync(self) -> None:
+        """Wait until what was pushed is on the disk. May run beside `add` and `push`, not beside `close`."""
+        self._unsynced = False
+        self._disk.sync(self._descriptor)
 
     def close(self) -> None:
         """Give the descriptor back; what was not flushed is not in the file."""
         self._disk.close(self._descriptor)
+
+    def _describe(self) -> None:
+        started = log_time_ns(self._description, 0)
+        channel = self._channel(SESSION_TOPIC, SESSION.name, SESSION.model, 0, SCHEMA_VERSION)
+        self._add(channel, (0, started, started), self._description.model_dump_json().encode())
 
     def _opening(self, software: str) -> bytes:
         head = RecordBuilder()

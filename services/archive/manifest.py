@@ -81,6 +81,13 @@ def rebuild(folder: Path, derived_version: str) -> Manifest:
     return with_state(with_files(manifest, entries), RecordingState.INTERRUPTED)
 
 
+def with_unlisted(folder: Path, manifest: Manifest) -> Manifest:
+    """The manifest with files that were closed just before it could be written."""
+    listed = {entry.name for entry in manifest.files}
+    unlisted = [path for name, path in segment_files(folder) if not name.part and name.file_name not in listed]
+    return with_files(manifest, (entry_of(scan(path), sha256_of(path), path.stat().st_size) for path in unlisted))
+
+
 def sha256_of(path: Path) -> str:
     """Hexadecimal digest of a file."""
     digest = hashlib.sha256()

@@ -14,11 +14,10 @@ from services.archive.manifest import (
     new_manifest,
     rebuild,
     segment_files,
-    sha256_of,
     store,
-    with_files,
+    with_unlisted,
 )
-from services.archive.seal import SEALING_SUFFIX, entry_of
+from services.archive.seal import SEALING_SUFFIX
 from services.archive.segment import scan
 
 
@@ -52,7 +51,7 @@ def recover(folder: Path, description: SessionDescription | None, derived_versio
     if manifest is None:
         return None
     manifest = manifest.model_copy(update={"derived_version": derived_version})
-    manifest = _with_unlisted(folder, manifest)
+    manifest = with_unlisted(folder, manifest)
     ledger = ledger_of(manifest)
     parts = [path for name, path in segment_files(folder) if name.part]
     for part in parts:
@@ -89,13 +88,6 @@ def _rebuilt(folder: Path, derived_version: str, disk: Disk) -> Manifest | None:
         return None
     store(folder, manifest, disk)
     return manifest
-
-
-def _with_unlisted(folder: Path, manifest: Manifest) -> Manifest:
-    """Files that were closed just before the manifest could be written."""
-    listed = {entry.name for entry in manifest.files}
-    unlisted = [path for name, path in segment_files(folder) if not name.part and name.file_name not in listed]
-    return with_files(manifest, (entry_of(scan(path), sha256_of(path), path.stat().st_size) for path in unlisted))
 
 
 def _next_number(folder: Path) -> int:

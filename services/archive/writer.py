@@ -36,6 +36,19 @@ class WriterCounts:
     refused: dict[tuple[str, Reason], int] = field(default_factory=dict)
 
 
+@dataclass(frozen=True)
+class PendingSync:
+    """A sync that may run in another thread while the writer goes on taking messages."""
+
+    journals: list[Journal]
+    reached: Durable
+
+    def run(self) -> None:
+        """Wait for the disk. Raises OSError."""
+        for journal in self.journals:
+            journal.sync()
+
+
 class SessionWriter:
     """Appends to the raw and the derived file of a session, which are begun when the first message needs them.
 
@@ -86,14 +99,31 @@ class SessionWriter:
         self._ledger.count(name, envelope.epoch, envelope.sequence, envelope.captured_ns, final=envelope.final)
         self.counts.written += 1
 
-    def flush(self) -> list[Path]:
-        """Bring everything to the disk; files that are full are closed and returned, to be sealed."""
+    @property
+    def full(self) -> bool:
+        """The open files have reached their age; `flush` and `close` begin new ones."""
+        return bool(self._journals) and self._monotonic_s() - self._begun_s >= self._parameters.rotation_s
+
+    def push(self) -> None:
+        """Hand everything to the operating system; a kill of this process cannot take it any more."""
         for journal in self._journals.values():
-            journal.flush()
-        self.durable = self._reached()
-        if self._monotonic_s() - self._begun_s < self._parameters.rotation_s:
-            return []
-        return self.close()
+            journal.push()
+
+    def pending(self) -> "PendingSync":
+        """What has been pushed and would be durable after a sync."""
+        journals = [journal for journal in self._journals.values() if journal.unsynced]
+        return PendingSync(journals, self._reached())
+
+    def settle(self, done: "PendingSync") -> None:
+        """A sync has run without an error."""
+        self.durable = done.reached
+
+    def flush(self) -> None:
+        """Push and sync: everything written so far is on the disk."""
+        self.push()
+        pending = self.pending()
+        pending.run()
+        self.settle(pending)
 
     def close(self) -> list[Path]:
         """Close the open files, to be sealed; what was not flushed is not in them. Further messages begin new ones."""
@@ -102,13 +132,14 @@ class SessionWriter:
             journal.close()
         self._number += bool(parts)
         self._journals.clear()
-        self._begun_s = self._monotonic_s()
         return parts
 
     def _journal(self, record: Record) -> Journal:
         kind = record.stream.signal.archived
         if kind is None:
             raise ValueError(f"{record.stream.name} is not a signal that is archived")
+        if not self._journals:
+            self._begun_s = self._monotonic_s()
         if kind not in self._journals:
             version = self._version if kind == "derived" else None
             path = self.folder / SegmentName(kind, version, self._number, part=True).file_name
