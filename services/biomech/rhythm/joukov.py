@@ -48,11 +48,11 @@ def errors(velocity: FloatArray, series: FloatArray, phase: float, result: Float
 @compiled
 def learn(series: FloatArray, error: FloatArray, phase: float, step: float) -> None:
     """(20) and (21) over one interval; step = eta dt."""
-    for c in range(error.size):
-        for i in range(series.shape[2]):
-            angle = (i + 1) * phase
-            series[0, c, i] += step * cos(angle) * error[c]
-            series[1, c, i] += step * sin(angle) * error[c]
+    for i in range(series.shape[2]):
+        cosine, sine = cos((i + 1) * phase), sin((i + 1) * phase)
+        for c in range(error.size):
+            series[0, c, i] += step * cosine * error[c]
+            series[1, c, i] += step * sine * error[c]
 
 
 @compiled
@@ -78,12 +78,52 @@ def follow_powers(oscillator: FloatArray, velocity: FloatArray, error: FloatArra
 @compiled
 def differentiate_twice(series: FloatArray, phase: float, frequency: float, result: FloatArray) -> None:
     """F(W) of each channel, rad/s^3."""
-    for c in range(series.shape[1]):
-        result[c] = 0.0
-        for i in range(series.shape[2]):
-            angle = (i + 1) * phase
-            value = series[0, c, i] * cos(angle) + series[1, c, i] * sin(angle)
+    result[:] = 0.0
+    for i in range(series.shape[2]):
+        cosine, sine = cos((i + 1) * phase), sin((i + 1) * phase)
+        for c in range(series.shape[1]):
+            value = series[0, c, i] * cosine + series[1, c, i] * sine
             result[c] -= ((i + 1) * frequency) ** 2 * value
+
+
+@compiled
+def advance(
+    oscillator: FloatArray,
+    series: FloatArray,
+    error: FloatArray,
+    rates: FloatArray,
+    driver: int,
+    velocity: FloatArray,
+    dt_s: float,
+    reading: FloatArray,
+) -> None:
+    """One sample; rates are zeta, eta, largest frequency, quality time; reading gets phase, frequency, quality."""
+    zeta, eta, largest_frequency, quality_time_s = rates
+    phase = oscillator[PHASE]
+    reading[0], reading[1] = phase, abs(oscillator[FREQUENCY])
+    errors(velocity, series, phase, error)
+    follow_powers(oscillator, velocity, error, min(dt_s / quality_time_s, 1.0))
+    learn(series, error, phase, eta * dt_s)
+    oscillate(oscillator, error[driver], zeta, largest_frequency, dt_s)
+    quality = 1.0 - oscillator[RESIDUAL_POWER] / (oscillator[SIGNAL_POWER] + 1e-9)
+    reading[2] = min(max(quality, 0.0), 1.0)
+
+
+@compiled
+def advance_many(
+    oscillator: FloatArray,
+    series: FloatArray,
+    error: FloatArray,
+    rates: FloatArray,
+    driver: int,
+    velocity: FloatArray,
+    dt_s: float,
+    readings: FloatArray,
+) -> None:
+    """`advance` over velocity (n, C); readings (n, 4): the last column, locked, is always 1."""
+    for n in range(velocity.shape[0]):
+        advance(oscillator, series, error, rates, driver, velocity[n], dt_s, readings[n])
+        readings[n, 3] = 1.0
 
 
 class JoukovOscillator:
@@ -101,28 +141,43 @@ class JoukovOscillator:
         self._oscillator = np.array([0.0, parameters.initial_frequency, 0.0, 0.0])
         self._series = np.zeros((2, channels, parameters.harmonics))
         self._error = np.zeros(channels)
+        self._rates = np.array(
+            [
+                parameters.frequency_rate,
+                parameters.coefficient_rate,
+                parameters.largest_frequency,
+                parameters.quality_time_s,
+            ]
+        )
 
     def step(self, velocity: NDArray[np.float64], dt_s: float) -> RhythmReading:
         """Take one sample: rad/s, shape (channels,), dt_s after the sample before.
 
         Where a velocity is not a number the oscillator runs on without correction.
         """
-        parameters, oscillator = self.parameters, self._oscillator
-        phase, frequency = float(oscillator[PHASE]), float(oscillator[FREQUENCY])
         dt_s = max(dt_s, 0.0)
+        reading = np.array([self._oscillator[PHASE], abs(self._oscillator[FREQUENCY]), 0.0])
         if np.isnan(velocity).any():
-            oscillator[PHASE] += frequency * dt_s
+            self._oscillator[PHASE] += self._oscillator[FREQUENCY] * dt_s
         else:
-            bounded = np.clip(velocity, -parameters.largest_velocity, parameters.largest_velocity)
-            errors(bounded, self._series, phase, self._error)
-            follow_powers(oscillator, bounded, self._error, min(dt_s / parameters.quality_time_s, 1.0))
-            learn(self._series, self._error, phase, parameters.coefficient_rate * dt_s)
-            error = float(self._error[parameters.driver])
-            oscillate(oscillator, error, parameters.frequency_rate, parameters.largest_frequency, dt_s)
+            advance(*self._state(), self._bounded(velocity), dt_s, reading)
         jerk = np.zeros(self.channels)
-        differentiate_twice(self._series, oscillator[PHASE], oscillator[FREQUENCY], jerk)
-        quality = 1.0 - oscillator[RESIDUAL_POWER] / (oscillator[SIGNAL_POWER] + 1e-9)
-        return RhythmReading(phase, abs(frequency), min(max(float(quality), 0.0), 1.0), True, jerk)
+        differentiate_twice(self._series, self._oscillator[PHASE], self._oscillator[FREQUENCY], jerk)
+        phase, frequency, quality = reading.tolist()
+        return RhythmReading(phase, frequency, quality, True, jerk)
+
+    def run(self, velocity: NDArray[np.float64], dt_s: float) -> NDArray[np.float64]:
+        """Take evenly spaced samples, rad/s, shape (n, channels); phase, frequency, quality, locked as (n, 4)."""
+        readings = np.zeros((velocity.shape[0], 4))
+        advance_many(*self._state(), self._bounded(velocity), dt_s, readings)
+        return readings
+
+    def _state(self) -> tuple[FloatArray, FloatArray, FloatArray, FloatArray, int]:
+        return self._oscillator, self._series, self._error, self._rates, self.parameters.driver
+
+    def _bounded(self, velocity: NDArray[np.float64]) -> NDArray[np.float64]:
+        largest = self.parameters.largest_velocity
+        return np.ascontiguousarray(np.minimum(np.maximum(velocity, -largest), largest))
 
     def snapshot(self) -> State:
         """Everything that changes, as JSON values."""
