@@ -18,13 +18,13 @@ from schemas.session import (
 from schemas.signals import IMU
 from schemas.vocabulary import Segment
 from services.flow.message import Stream
+from services.flow.rejections import RejectionCounter
 from services.ingest.data import find_data
 from services.ingest.driver import SourceMessage
 from services.ingest.identity import Identity
 from services.ingest.manifest import HubEntry, Manifest, SensorEntry, load_manifest
 from services.ingest.reference import channels_of, read_reference, reference_track
 from services.ingest.sensor_file import read_sensor
-from services.ingest.tally import Tally
 from services.ingest.tracks import hub_messages, in_order, reference_messages
 
 
@@ -35,13 +35,15 @@ class Recording:
         """Read everything. Raises a SourceError that names file, line and column."""
         self._manifest = load_manifest(manifest_path)
         self._identity = identity
-        self._tally = Tally()
+        self._rejected = RejectionCounter()
         self._folder = find_data(self._manifest.data, manifest_path.resolve().parent)
         raw = [
-            [read_sensor(self._folder, self._manifest, sensor, self._tally) for sensor in hub.sensor]
+            [read_sensor(self._folder, self._manifest, sensor, self._rejected) for sensor in hub.sensor]
             for hub in self._manifest.hub
         ]
-        truth = [read_reference(self._folder, self._manifest, entry, self._tally) for entry in self._manifest.reference]
+        truth = [
+            read_reference(self._folder, self._manifest, entry, self._rejected) for entry in self._manifest.reference
+        ]
         starts = [track.time_s.min() for track in itertools.chain(*raw)] + [table.time_s.min() for table in truth]
         zero_s = float(min(starts))
         self._hubs = [[track.placed(zero_s) for track in tracks] for tracks in raw]
@@ -89,7 +91,7 @@ class Recording:
 
     def rejections(self) -> list[Rejection]:
         """Rows that were left out, by sensor or file."""
-        return self._tally.rejections()
+        return self._rejected.report()
 
     def _last_ns(self) -> int:
         return max(int(track.captured_ns[-1]) for tracks in self._hubs for track in tracks)

@@ -8,12 +8,12 @@ from numpy.typing import NDArray
 from scipy.spatial.transform import Rotation
 
 from schemas.health import Reason
+from services.flow.rejections import RejectionCounter
 from services.ingest.axes import rotation_from_axes
 from services.ingest.errors import EmptyFile, place
 from services.ingest.manifest import Manifest, OrientationEntry, PointEntry, ReferenceEntry
 from services.ingest.sensor_file import csv_format, expanded
 from services.ingest.table import Table, read_table
-from services.ingest.tally import Tally
 from services.ingest.timing import advancing_rows, row_times_s
 from services.ingest.tracks import ReferenceTrack
 from services.ingest.units import reference_unit, scale_to_si
@@ -36,7 +36,9 @@ def channels_of(entry: ReferenceEntry) -> list[tuple[str, str]]:
     return channels + [(f"{turn.name}_{axis}", "1") for turn in entry.orientation for axis in "wxyz"]
 
 
-def read_reference(folder: Path, manifest: Manifest, entry: ReferenceEntry, tally: Tally) -> ReferenceTable:
+def read_reference(
+    folder: Path, manifest: Manifest, entry: ReferenceEntry, rejected: RejectionCounter
+) -> ReferenceTable:
     """Read and convert one file of truth. Raises a SourceError that names file, line and column."""
     time = entry.time or manifest.time
     wanted = [channel.column for channel in entry.channel]
@@ -49,10 +51,10 @@ def read_reference(folder: Path, manifest: Manifest, entry: ReferenceEntry, tall
         wanted + ([time.column] if time.column else []),
         csv_format(entry.format or manifest.format),
     )
-    tally.add(entry.file, Reason.MALFORMED_ROW, table.malformed)
+    rejected.add(entry.file, Reason.MALFORMED_ROW, table.malformed)
     time_s = row_times_s(table, time, entry.rate_hz or manifest.rate_hz)
     advancing = advancing_rows(table, time_s)
-    tally.add(entry.file, Reason.CLOCK_BACKWARDS, int(np.isfinite(time_s).sum() - advancing.sum()))
+    rejected.add(entry.file, Reason.CLOCK_BACKWARDS, int(np.isfinite(time_s).sum() - advancing.sum()))
     if not advancing.any():
         raise EmptyFile(f"{place(table.path)}: no row with a time")
     return ReferenceTable(time_s[advancing], _converted(entry, table)[advancing])

@@ -7,12 +7,12 @@ import numpy as np
 from numpy.typing import NDArray
 
 from schemas.health import Reason
+from services.flow.rejections import RejectionCounter
 from services.ingest.axes import rotation_from_axes
 from services.ingest.checks import DeclaredUnits, check_units
 from services.ingest.errors import EmptyFile, place
 from services.ingest.manifest import FormatEntry, Manifest, QuantityEntry, SensorEntry
 from services.ingest.table import CsvFormat, Table, read_table
-from services.ingest.tally import Tally
 from services.ingest.timing import advancing_rows, row_times_s
 from services.ingest.tracks import ImuTrack
 from services.ingest.units import scale_to_si
@@ -42,7 +42,7 @@ class RawTrack:
         return RawTrack(self.time_s[kept], self.angular_velocity[kept], self.specific_force[kept])
 
 
-def read_sensor(folder: Path, manifest: Manifest, sensor: SensorEntry, tally: Tally) -> RawTrack:
+def read_sensor(folder: Path, manifest: Manifest, sensor: SensorEntry, rejected: RejectionCounter) -> RawTrack:
     """Read, convert and check one sensor. Raises a SourceError that names file, line and column."""
     shared = manifest.imu
     force = _quantity(sensor.specific_force, shared.specific_force)
@@ -51,18 +51,18 @@ def read_sensor(folder: Path, manifest: Manifest, sensor: SensorEntry, tally: Ta
     path = folder / (sensor.file or shared.file or "").replace("{sensor}", sensor.name)
     wanted = [*_columns(rate, sensor.name), *_columns(force, sensor.name), *([time.column] if time.column else [])]
     table = read_table(path, wanted, csv_format(manifest.format))
-    tally.add(sensor.name, Reason.MALFORMED_ROW, table.malformed)
+    rejected.add(sensor.name, Reason.MALFORMED_ROW, table.malformed)
     rate_hz = sensor.rate_hz or manifest.rate_hz
     R_sensor_from_vendor = rotation_from_axes(sensor.axes or shared.axes, sensor.name)
     scales = scale_to_si("angular velocity", rate.unit), scale_to_si("specific force", force.unit)
     vendor = RawTrack(row_times_s(table, time, rate_hz), table.values[:, :3], table.values[:, 3:6])
-    usable = _usable(table, sensor.name, vendor, tally)
+    usable = _usable(table, sensor.name, vendor, rejected)
     track = RawTrack(
         usable.time_s,
         usable.angular_velocity @ R_sensor_from_vendor.T * scales[0],
         usable.specific_force @ R_sensor_from_vendor.T * scales[1],
     )
-    track = _in_range(sensor.name, track, tally)
+    track = _in_range(sensor.name, track, rejected)
     where = f"{place(path)}, sensor {sensor.name}"
     check_units(where, track.placed(float(track.time_s[0])), rate_hz, DeclaredUnits(force.unit, rate.unit))
     return track
@@ -92,23 +92,23 @@ def _quantity(own: QuantityEntry | None, shared: QuantityEntry | None) -> Quanti
     return entry
 
 
-def _usable(table: Table, sensor: str, track: RawTrack, tally: Tally) -> RawTrack:
+def _usable(table: Table, sensor: str, track: RawTrack, rejected: RejectionCounter) -> RawTrack:
     finite = np.isfinite(track.angular_velocity).all(axis=1) & np.isfinite(track.specific_force).all(axis=1)
     finite &= np.isfinite(track.time_s)
-    tally.add(sensor, Reason.NOT_FINITE, int((~finite).sum()))
+    rejected.add(sensor, Reason.NOT_FINITE, int((~finite).sum()))
     advancing = advancing_rows(table, np.where(finite, track.time_s, np.nan))
-    tally.add(sensor, Reason.CLOCK_BACKWARDS, int(finite.sum() - advancing.sum()))
+    rejected.add(sensor, Reason.CLOCK_BACKWARDS, int(finite.sum() - advancing.sum()))
     if not advancing.any():
         raise EmptyFile(f"{place(table.path)}: sensor {sensor} has no row with all its numbers")
     return track.where(advancing)
 
 
-def _in_range(sensor: str, track: RawTrack, tally: Tally) -> RawTrack:
+def _in_range(sensor: str, track: RawTrack, rejected: RejectionCounter) -> RawTrack:
     """Without absurd rows; when most are absurd the unit is wrong, and the check of units says so."""
     kept = (np.abs(track.angular_velocity).max(axis=1) < LARGEST_ANGULAR_VELOCITY) & (
         np.abs(track.specific_force).max(axis=1) < LARGEST_SPECIFIC_FORCE
     )
     if kept.mean() < 0.5:
         return track
-    tally.add(sensor, Reason.OUT_OF_RANGE, int((~kept).sum()))
+    rejected.add(sensor, Reason.OUT_OF_RANGE, int((~kept).sum()))
     return track.where(kept)

@@ -3,12 +3,14 @@
 from collections.abc import Iterator
 from pathlib import Path
 
+from schemas.archive_layout import PART_SUFFIX
 from services.flow.message import Envelope, Message, Stream
 from services.ingest.data import MANIFESTS
 from services.ingest.driver import Source, SourceMessage, streams_of
 from services.ingest.errors import SourceError, UnknownSource
 from services.ingest.identity import Identity
 from services.ingest.manifest import FILE_NAME
+from services.ingest.mcap_file import McapRecording, raw_files
 from services.ingest.recording import Recording
 from services.ingest.synthetic.source import open_synthetic
 from services.ingest.tracks import joined
@@ -22,7 +24,8 @@ def shipped_manifests() -> list[str]:
 
 
 def open_source(spec: str, *, session: str | None = None, estimator: str | None = None) -> Source:
-    """Open a recording folder, a manifest, an .mcap file, a known recording's name, or `synthetic:walk?speed=1.1`.
+    """Open a recording folder, a manifest, an .mcap file or an archived session's folder, a known recording's name,
+    or `synthetic:walk?speed=1.1`.
 
     `session` None takes a random id, `estimator` None leaves the choice to the source.
     Raises SourceError, saying what is wrong where and what to do.
@@ -36,8 +39,11 @@ def open_source(spec: str, *, session: str | None = None, estimator: str | None 
     path = Path(spec)
     if path.suffix == ".toml":
         return Recording(path, identity)
+    if path.suffix == ".mcap" or path.name.endswith(f".mcap{PART_SUFFIX}"):
+        return McapRecording([path], identity)
     if path.is_dir():
-        return Recording(path / FILE_NAME, identity)
+        archived = [] if (path / FILE_NAME).exists() else raw_files(path)
+        return McapRecording(archived, identity) if archived else Recording(path / FILE_NAME, identity)
     known = ", ".join(shipped_manifests())
     raise UnknownSource(
         f"{spec!r} is no folder with {FILE_NAME}, no .mcap file, no synthetic:walk and no known recording ({known})"
