@@ -3,7 +3,6 @@
 import asyncio
 from collections import deque
 
-
 NORMAL, GOING_AWAY, TRY_AGAIN = 1000, 1001, 1013
 """Close codes: the session is over; the gateway stops; too slow, so read by REST and come again."""
 

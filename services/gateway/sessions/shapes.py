@@ -49,6 +49,6 @@ def _highlights(row: SessionRow) -> Highlights | None:
     whole_body = {metric.name: metric.value for metric in metrics.metrics if metric.side is None}
     return Highlights(
         walking_speed=whole_body.get("walking_speed"),
-        cadence_per_min=whole_body.get("cadence_steps_per_min"),
-        strides=max((metric.strides for metric in metrics.metrics), default=0),
+        cadence_per_min=whole_body.get("cadence"),
+        strides=round(sum(metric.value or 0 for metric in metrics.metrics if metric.name == "strides_counted")),
     )

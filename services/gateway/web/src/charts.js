@@ -32,7 +32,11 @@ function sidesWithBands(width) {
   SIDES.forEach((side, index) => {
     const colour = SIDE_COLOUR[side];
     const edge = { stroke: "transparent", width: 0, points: { show: false } };
-    series.push({ label: side, stroke: colour, width, dash: SIDE_DASH[side], points: { show: false } }, { ...edge }, { ...edge });
+    series.push(
+      { label: side, stroke: colour, width, dash: SIDE_DASH[side], points: { show: false } },
+      { ...edge },
+      { ...edge },
+    );
     bands.push({ series: [3 * index + 2, 3 * index + 3], fill: faint(colour, 0.14) });
   });
   return { series, bands };
@@ -40,9 +44,14 @@ function sidesWithBands(width) {
 
 /** Keeps the chart as wide and high as its host. */
 function fitted(host, options, data) {
-  const chart = new uPlot({ width: 300, height: 120, legend: { show: false }, cursor: { show: false }, ...options }, data, host);
+  const chart = new uPlot(
+    { width: 300, height: 120, legend: { show: false }, cursor: { show: false }, ...options },
+    data,
+    host,
+  );
   const observer = new ResizeObserver(() => {
-    if (host.clientWidth > 0 && host.clientHeight > 0) chart.setSize({ width: host.clientWidth, height: host.clientHeight });
+    if (host.clientWidth > 0 && host.clientHeight > 0)
+      chart.setSize({ width: host.clientWidth, height: host.clientHeight });
   });
   observer.observe(host);
   return {
@@ -112,7 +121,8 @@ export class RollingChart {
 
   widen(value) {
     const [low, high] = this.range;
-    if (value < low || value > high) this.range = [Math.min(low, 10 * Math.floor(value / 10)), Math.max(high, 10 * Math.ceil(value / 10))];
+    if (value < low || value > high)
+      this.range = [Math.min(low, 10 * Math.floor(value / 10)), Math.max(high, 10 * Math.ceil(value / 10))];
   }
 
   forget(before) {
@@ -163,7 +173,11 @@ export class MeanChart {
       const curve = curves[side];
       const mean = curve ? curve.mean.map(degrees) : data[0].map(() => null);
       const spread = curve ? curve.spread.map(degrees) : data[0].map(() => null);
-      data.push(mean, mean.map((value, i) => value === null ? null : value + spread[i]), mean.map((value, i) => value === null ? null : value - spread[i]));
+      data.push(
+        mean,
+        mean.map((value, i) => (value === null ? null : value + spread[i])),
+        mean.map((value, i) => (value === null ? null : value - spread[i])),
+      );
     }
     this.fit = fitted(
       host,

@@ -7,7 +7,12 @@
 export function el(tag, attributes = {}, ...children) {
   const node = document.createElement(tag);
   set(node, attributes);
-  node.append(...children.flat().filter((child) => child !== null && child !== undefined).map(asNode));
+  node.append(
+    ...children
+      .flat()
+      .filter((child) => child !== null && child !== undefined)
+      .map(asNode),
+  );
   return node;
 }
 
@@ -24,9 +29,24 @@ export function say(node, text) {
   if (node.textContent !== text) node.textContent = text;
 }
 
+/** A table with a head; columns whose name ends in # hold numbers. `body` is filled by the caller. */
+export function table(columns, body) {
+  const cells = columns.map((name) =>
+    name.endsWith("#")
+      ? el("th", { scope: "col", class: "number" }, name.slice(0, -1))
+      : el("th", { scope: "col" }, name),
+  );
+  return el("div", { class: "scroll" }, el("table", {}, el("thead", {}, el("tr", {}, ...cells)), body));
+}
+
 /** Replace everything inside a node. */
 export function fill(node, ...children) {
-  node.replaceChildren(...children.flat().filter((child) => child !== null).map(asNode));
+  node.replaceChildren(
+    ...children
+      .flat()
+      .filter((child) => child !== null)
+      .map(asNode),
+  );
 }
 
 function asNode(child) {

@@ -4,7 +4,7 @@
 export const SIDES = ["left", "right"];
 const PELVIS_HEIGHT_M = 0.11;
 const FOOT_LENGTH_M = 0.2;
-const TRUNK_M = 0.5;
+const TRUNK_M = 0.42;
 
 /** Vector seen from the world, of a vector seen from the segment. */
 export function rotate([w, x, y, z], [a, b, c]) {
@@ -46,7 +46,10 @@ export function figureOf(pose, body) {
   }
   const up = rotate(pelvis.quat_world_from_segment, [0, 1, 0]);
   const middle = points.hip_left.map((value, axis) => (value + points.hip_right[axis]) / 2);
-  points.pelvis_top = plus(middle, up.map((value) => value * PELVIS_HEIGHT_M));
+  points.pelvis_top = plus(
+    middle,
+    up.map((value) => value * PELVIS_HEIGHT_M),
+  );
   points.neck = plus(points.pelvis_top, [0, TRUNK_M, 0]);
   return { points, valid, heading: headingOf(pelvis.quat_world_from_segment) };
 }

@@ -1,35 +1,55 @@
 // The floor: who walks now, trouble first, and what has been recorded.
 import { get } from "./api.js";
-import { el, fill, say } from "./dom.js";
+import { el, fill, say, table } from "./dom.js";
 import { clock, number, when } from "./units.js";
 import { STALE_S, STORED_WORDS, byTrouble, lastData, stateOf } from "./words.js";
 
 const PAGE = 20;
+const COLUMNS = ["Session", "Patient", "Started", "Length#", "Strides#", "Speed#", "Cadence#", "State"];
 
 export class FloorView {
   constructor(host, { startSession }) {
     this.cards = new Map();
     this.offset = 0;
     this.live = el("div", { class: "cards" });
-    this.empty = el("div", { class: "empty" }, el("h2", {}, "Nobody walks just now"), el("p", {}, "Start a recorded or simulated walk, or switch on a device: it shows up here by itself."), el("button", { class: "primary", type: "button", onclick: startSession }, "Start a session"));
+    this.empty = el(
+      "div",
+      { class: "empty" },
+      el("h2", {}, "Nobody walks just now"),
+      el("p", {}, "Start a recorded or simulated walk, or switch on a device: it shows up here by itself."),
+      el("button", { class: "primary", type: "button", onclick: startSession }, "Start a session"),
+    );
     this.rows = el("tbody");
     this.total = el("span", { class: "quiet" });
-    this.filter = el("select", { "aria-label": "Show sessions in state", onchange: () => this.turn(0) }, el("option", { value: "" }, "All"), ...Object.entries(STORED_WORDS).map(([state, { word }]) => el("option", { value: state }, word)));
+    this.filter = el(
+      "select",
+      { "aria-label": "Show sessions in state", onchange: () => this.turn(0) },
+      el("option", { value: "" }, "All"),
+      ...Object.entries(STORED_WORDS).map(([state, { word }]) => el("option", { value: state }, word)),
+    );
     this.newer = el("button", { type: "button", onclick: () => this.turn(this.offset - PAGE) }, "Newer");
     this.older = el("button", { type: "button", onclick: () => this.turn(this.offset + PAGE) }, "Older");
     fill(
       host,
       el("section", { "aria-label": "Running sessions" }, el("h1", {}, "Now"), this.empty, this.live),
-      el("section", { class: "panel", "aria-label": "Recorded sessions" }, el("div", { class: "panel-head" }, el("h2", {}, "Sessions"), this.total, el("span", { class: "spring" }), this.filter, this.newer, this.older), this.table()),
+      el(
+        "section",
+        { class: "panel", "aria-label": "Recorded sessions" },
+        el(
+          "div",
+          { class: "panel-head" },
+          el("h2", {}, "Sessions"),
+          this.total,
+          el("span", { class: "spring" }),
+          this.filter,
+          this.newer,
+          this.older,
+        ),
+        table(COLUMNS, this.rows),
+      ),
     );
     this.refresh();
     this.timer = setInterval(() => this.refresh(), 5000);
-  }
-
-  table() {
-    const head = ["Session", "Patient", "Started", "Length", "Strides", "Speed", "Cadence", "State"];
-    const numeric = new Set(["Length", "Strides", "Speed", "Cadence"]);
-    return el("div", { class: "scroll" }, el("table", {}, el("thead", {}, el("tr", {}, ...head.map((name) => el("th", { scope: "col", class: numeric.has(name) ? "number" : null }, name)))), this.rows));
   }
 
   turn(offset) {
@@ -44,7 +64,12 @@ export class FloorView {
     say(this.total, `${page.total} in all`);
     this.newer.disabled = this.offset === 0;
     this.older.disabled = this.offset + PAGE >= page.total;
-    fill(this.rows, page.items.length > 0 ? page.items.map(row) : el("tr", {}, el("td", { colspan: 8, class: "quiet" }, "No sessions yet.")));
+    fill(
+      this.rows,
+      page.items.length > 0
+        ? page.items.map(row)
+        : el("tr", {}, el("td", { colspan: 8, class: "quiet" }, "No sessions yet.")),
+    );
   }
 
   /** The newest list of running sessions. */
@@ -60,7 +85,13 @@ export class FloorView {
     const since = (performance.now() - this.arrived) / 1000;
     const entries = this.status.sessions.map((session) => {
       const age_s = session.age_s === null ? null : session.age_s + Math.max(0, since - 0.5);
-      const state = stateOf({ ...session, age_s, segments: session.sensor_segments, silent: this.status.silent, heard: this.status.connected });
+      const state = stateOf({
+        ...session,
+        age_s,
+        segments: session.sensor_segments,
+        silent: this.status.silent,
+        heard: this.status.connected,
+      });
       return { session, age_s, ...state };
     });
     entries.sort((x, y) => byTrouble(x, y) || x.session.started_unix_s - y.session.started_unix_s);
@@ -106,8 +137,22 @@ class Card {
     this.cadence = el("dd");
     this.strides = el("dd");
     this.age = el("p", { class: "quiet" });
-    const facts = el("dl", { class: "facts" }, fact("Time", this.elapsed), fact("Cadence", this.cadence), fact("Strides", this.strides));
-    this.node = el("a", { class: "card", href: `#/sessions/${session.id}` }, el("div", { class: "card-head" }, this.title, this.code), this.word, facts, this.advice, this.age);
+    const facts = el(
+      "dl",
+      { class: "facts" },
+      fact("Time", this.elapsed),
+      fact("Cadence", this.cadence),
+      fact("Strides", this.strides),
+    );
+    this.node = el(
+      "a",
+      { class: "card", href: `#/sessions/${session.id}` },
+      el("div", { class: "card-head" }, this.title, this.code),
+      this.word,
+      facts,
+      this.advice,
+      this.age,
+    );
   }
 
   show({ session, age_s, word, tone }) {
@@ -134,9 +179,13 @@ function row(session) {
     "tr",
     {},
     el("td", {}, el("a", { href: `#/sessions/${session.id}` }, session.title)),
-    el("td", {}, session.patient ? el("span", { class: "code" }, session.patient) : el("span", { class: "quiet" }, "unassigned")),
+    el(
+      "td",
+      {},
+      session.patient ? el("span", { class: "code" }, session.patient) : el("span", { class: "quiet" }, "unassigned"),
+    ),
     el("td", {}, when(session.started ?? session.created)),
-    el("td", { class: "number" }, clock(session.duration_s)),
+    el("td", { class: "number" }, session.ended ? clock(session.duration_s) : "–"),
     el("td", { class: "number" }, best ? String(best.strides) : "–"),
     el("td", { class: "number" }, best ? `${number(best.walking_speed, 2)} m/s` : "–"),
     el("td", { class: "number" }, best ? `${number(best.cadence_per_min, 0)} /min` : "–"),

@@ -6,7 +6,12 @@ const LONGEST_STRIDE_S = 3;
 
 const PER_SIDE = [
   { name: "Step length", unit: "m", of: (stride) => stride.step_length_m, digits: 2 },
-  { name: "Stance", unit: "%", of: (stride) => (stride.stance_fraction === null ? null : 100 * stride.stance_fraction), digits: 0 },
+  {
+    name: "Stance",
+    unit: "%",
+    of: (stride) => (stride.stance_fraction === null ? null : 100 * stride.stance_fraction),
+    digits: 0,
+  },
   { name: "Stride time", unit: "s", of: (stride) => stride.stride_time_s, digits: 2 },
   { name: "Strides", unit: "", of: (stride) => stride.index + 1, digits: 0 },
 ];
@@ -16,10 +21,33 @@ export class LiveNumbers {
     this.newest = {};
     this.speed = tile("Speed", "m/s");
     this.cadence = tile("Cadence", "steps/min");
-    this.cells = PER_SIDE.map((row) => ({ ...row, left: el("td", { class: "number" }, "–"), right: el("td", { class: "number" }, "–") }));
-    const head = el("tr", {}, el("th", { scope: "col" }, "Last stride"), el("th", { scope: "col", class: "number left" }, "Left"), el("th", { scope: "col", class: "number right" }, "Right"));
-    const rows = this.cells.map((row) => el("tr", {}, el("th", { scope: "row" }, row.name, row.unit ? el("span", { class: "unit" }, ` ${row.unit}`) : null), row.left, row.right));
-    this.node = el("div", { class: "numbers" }, el("div", { class: "tiles" }, this.speed.node, this.cadence.node), el("table", {}, el("thead", {}, head), el("tbody", {}, ...rows)));
+    this.cells = PER_SIDE.map((row) => ({
+      ...row,
+      left: el("td", { class: "number" }, "–"),
+      right: el("td", { class: "number" }, "–"),
+    }));
+    const head = el(
+      "tr",
+      {},
+      el("th", { scope: "col" }, "Last stride"),
+      el("th", { scope: "col", class: "number left" }, "Left"),
+      el("th", { scope: "col", class: "number right" }, "Right"),
+    );
+    const rows = this.cells.map((row) =>
+      el(
+        "tr",
+        {},
+        el("th", { scope: "row" }, row.name, row.unit ? el("span", { class: "unit" }, ` ${row.unit}`) : null),
+        row.left,
+        row.right,
+      ),
+    );
+    this.node = el(
+      "div",
+      { class: "numbers" },
+      el("div", { class: "tiles" }, this.speed.node, this.cadence.node),
+      el("table", {}, el("thead", {}, head), el("tbody", {}, ...rows)),
+    );
   }
 
   onPose(pose) {
@@ -55,5 +83,15 @@ export class LiveNumbers {
 function tile(name, unit) {
   const value = el("span", { class: "value" }, "–");
   const note = el("span", { class: "quiet" });
-  return { value, note, node: el("div", { class: "tile" }, el("span", { class: "name" }, name), el("span", {}, value, el("span", { class: "unit" }, ` ${unit}`)), note) };
+  return {
+    value,
+    note,
+    node: el(
+      "div",
+      { class: "tile" },
+      el("span", { class: "name" }, name),
+      el("span", {}, value, el("span", { class: "unit" }, ` ${unit}`)),
+      note,
+    ),
+  };
 }

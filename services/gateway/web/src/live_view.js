@@ -48,12 +48,35 @@ export class LiveView {
     this.charts = JOINTS.map((joint) => chartPanel(joint));
     fill(
       host,
-      el("div", { class: "session-head" }, this.title, this.word, this.elapsed, this.ageText, el("span", { class: "spring" }), this.link.node, this.stopButton),
+      el(
+        "div",
+        { class: "session-head" },
+        this.title,
+        this.word,
+        this.elapsed,
+        this.ageText,
+        el("span", { class: "spring" }),
+        this.link.node,
+        this.stopButton,
+      ),
       this.advice,
       el(
         "div",
         { class: "live" },
-        el("section", { class: "panel body-panel", "aria-label": "Skeleton" }, this.viewButtons(), this.stage, el("p", { class: "key" }, el("b", { class: "left" }, "L left"), el("b", { class: "right" }, "R right"), el("span", {}, "grey: not known now"), el("span", {}, "pale: not measured"))),
+        el(
+          "section",
+          { class: "panel body-panel", "aria-label": "Skeleton" },
+          this.viewButtons(),
+          this.stage,
+          el(
+            "p",
+            { class: "key" },
+            el("b", { class: "left" }, "L left"),
+            el("b", { class: "right" }, "R right"),
+            el("span", {}, "grey: not known now"),
+            el("span", {}, "pale: not measured"),
+          ),
+        ),
         el("div", { class: "curves" }, ...this.charts.map((chart) => chart.node)),
         el("section", { class: "panel numbers-panel", "aria-label": "Numbers" }, this.numbers.node),
         el("section", { class: "panel", "aria-label": "Sensors" }, el("h2", {}, "Sensors"), this.sensorList),
@@ -65,7 +88,17 @@ export class LiveView {
   }
 
   viewButtons() {
-    const buttons = Object.entries(VIEWS).map(([view, name]) => el("button", { type: "button", "aria-pressed": view === "side", onclick: (event) => this.look(view, event.currentTarget) }, name));
+    const buttons = Object.entries(VIEWS).map(([view, name]) =>
+      el(
+        "button",
+        {
+          type: "button",
+          "aria-pressed": String(view === "side"),
+          onclick: (event) => this.look(view, event.currentTarget),
+        },
+        name,
+      ),
+    );
     return el("div", { class: "views", role: "group", "aria-label": "View from" }, ...buttons);
   }
 
@@ -128,7 +161,14 @@ export class LiveView {
   tick() {
     const age_s = this.currentAge();
     const silent = this.status?.silent ?? [];
-    const { word, tone } = stateOf({ age_s, phase: this.phase, sensors: this.sensors, segments: this.segments, silent, heard: this.open && (this.status?.connected ?? false) });
+    const { word, tone } = stateOf({
+      age_s,
+      phase: this.phase,
+      sensors: this.sensors,
+      segments: this.segments,
+      silent,
+      heard: this.open && (this.status?.connected ?? false),
+    });
     say(this.word, word);
     this.word.dataset.tone = tone;
     say(this.ageText, lastData(age_s));
@@ -142,10 +182,18 @@ export class LiveView {
     const text = this.sensors.map((each) => each.sensor + each.state).join();
     if (text === this.sensorText) return;
     this.sensorText = text;
-    fill(this.sensorList, ...this.sensors.map((each) => {
-      const { word, tone } = SENSOR_WORDS[each.state];
-      return el("li", {}, el("span", {}, segmentName(this.segments[each.sensor] ?? each.sensor)), el("span", { class: "chip small", "data-tone": tone }, word));
-    }));
+    fill(
+      this.sensorList,
+      ...this.sensors.map((each) => {
+        const { word, tone } = SENSOR_WORDS[each.state];
+        return el(
+          "li",
+          {},
+          el("span", {}, segmentName(this.segments[each.sensor] ?? each.sensor)),
+          el("span", { class: "chip small", "data-tone": tone }, word),
+        );
+      }),
+    );
   }
 
   async stop() {
@@ -171,7 +219,12 @@ export class LiveView {
 function chartPanel({ joint, title, range }) {
   const now = { left: el("b", { class: "left" }), right: el("b", { class: "right" }) };
   const host = el("div", { class: "chart" });
-  const node = el("section", { class: "panel chart-panel", "aria-label": title }, el("div", { class: "panel-head" }, el("h2", {}, title), el("span", { class: "spring" }), now.left, now.right), host);
+  const node = el(
+    "section",
+    { class: "panel chart-panel", "aria-label": title },
+    el("div", { class: "panel-head" }, el("h2", {}, title), el("span", { class: "spring" }), now.left, now.right),
+    host,
+  );
   return {
     node,
     start() {

@@ -12,4 +12,8 @@ export const PELVIS = "#44606E";
 export const GHOST = "#CBD4D8";
 
 /** `#rrggbb` with an alpha for bands. */
-export const faint = (colour, alpha) => colour + Math.round(alpha * 255).toString(16).padStart(2, "0");
+export const faint = (colour, alpha) =>
+  colour +
+  Math.round(alpha * 255)
+    .toString(16)
+    .padStart(2, "0");

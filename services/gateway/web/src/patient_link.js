@@ -26,7 +26,12 @@ export class PatientLink {
   show(code) {
     this.current = code;
     const codes = code && !this.codes.includes(code) ? [code, ...this.codes] : this.codes;
-    fill(this.select, el("option", { value: "" }, "unassigned"), ...codes.map((each) => el("option", { value: each }, each)), el("option", { value: NEW }, "New patient"));
+    fill(
+      this.select,
+      el("option", { value: "" }, "unassigned"),
+      ...codes.map((each) => el("option", { value: each }, each)),
+      el("option", { value: NEW }, "New patient"),
+    );
     this.select.value = code ?? "";
   }
 

@@ -1,6 +1,6 @@
 // Patients as codes. Who is behind a code is known outside of Ambula.
 import { get, patch, post } from "./api.js";
-import { el, fill, say } from "./dom.js";
+import { el, fill, say, table } from "./dom.js";
 import { when } from "./units.js";
 
 const PAGE = 50;
@@ -11,13 +11,29 @@ export class PatientsView {
     this.total = el("span", { class: "quiet" });
     this.problem = el("p", { class: "banner", role: "alert", hidden: true });
     this.offset = 0;
-    const head = ["Code", "Year of birth", "Sessions", "Registered"];
     fill(
       host,
-      el("section", { class: "panel", "aria-label": "Patients" }, el("div", { class: "panel-head" }, el("h1", {}, "Patients"), this.total, el("span", { class: "spring" }), el("button", { type: "button", onclick: () => this.turn(-PAGE) }, "Newer"), el("button", { type: "button", onclick: () => this.turn(PAGE) }, "Older"), el("button", { class: "primary", type: "button", onclick: () => this.add() }, "New patient")),
-        el("p", { class: "quiet" }, "A patient is a random code here. Write it on the chart; names do not belong into this software."),
+      el(
+        "section",
+        { class: "panel", "aria-label": "Patients" },
+        el(
+          "div",
+          { class: "panel-head" },
+          el("h1", {}, "Patients"),
+          this.total,
+          el("span", { class: "spring" }),
+          el("button", { type: "button", onclick: () => this.turn(-PAGE) }, "Newer"),
+          el("button", { type: "button", onclick: () => this.turn(PAGE) }, "Older"),
+          el("button", { class: "primary", type: "button", onclick: () => this.add() }, "New patient"),
+        ),
+        el(
+          "p",
+          { class: "quiet" },
+          "A patient is a random code here. Write it on the chart; names do not belong into this software.",
+        ),
         this.problem,
-        el("div", { class: "scroll" }, el("table", {}, el("thead", {}, el("tr", {}, ...head.map((name) => el("th", { scope: "col" }, name)))), this.rows))),
+        table(["Code", "Year of birth", "Sessions", "Registered"], this.rows),
+      ),
     );
     this.load();
   }
@@ -31,14 +47,37 @@ export class PatientsView {
       const page = await get(`/patients?limit=${PAGE}&offset=${this.offset}`);
       this.count = page.total;
       say(this.total, `${page.total} in all`);
-      fill(this.rows, page.items.length > 0 ? page.items.map((patient) => this.row(patient)) : el("tr", {}, el("td", { colspan: 4, class: "quiet" }, "No patients yet.")));
+      fill(
+        this.rows,
+        page.items.length > 0
+          ? page.items.map((patient) => this.row(patient))
+          : el("tr", {}, el("td", { colspan: 4, class: "quiet" }, "No patients yet.")),
+      );
     });
   }
 
   row(patient) {
-    const year = el("input", { type: "number", min: 1900, max: 2100, value: patient.year_of_birth, placeholder: "not given", "aria-label": `Year of birth of ${patient.code}` });
-    year.addEventListener("change", () => this.attempt(() => patch(`/patients/${patient.code}`, { year_of_birth: year.value === "" ? null : Number(year.value) })));
-    return el("tr", {}, el("td", {}, el("span", { class: "code" }, patient.code)), el("td", {}, year), el("td", {}, String(patient.sessions)), el("td", {}, when(patient.created)));
+    const year = el("input", {
+      type: "number",
+      min: 1900,
+      max: 2100,
+      value: patient.year_of_birth,
+      placeholder: "not given",
+      "aria-label": `Year of birth of ${patient.code}`,
+    });
+    year.addEventListener("change", () =>
+      this.attempt(() =>
+        patch(`/patients/${patient.code}`, { year_of_birth: year.value === "" ? null : Number(year.value) }),
+      ),
+    );
+    return el(
+      "tr",
+      {},
+      el("td", {}, el("span", { class: "code" }, patient.code)),
+      el("td", {}, year),
+      el("td", {}, String(patient.sessions)),
+      el("td", {}, when(patient.created)),
+    );
   }
 
   async add() {

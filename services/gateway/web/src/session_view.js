@@ -20,7 +20,11 @@ export class SessionView {
       if (!this.disposed) this.show(session);
     } catch (problem) {
       if (this.disposed) return;
-      if (!this.view) fill(this.host, el("div", { class: "empty" }, el("h2", {}, "This session can not be shown"), el("p", {}, problem.message)));
+      if (!this.view)
+        fill(
+          this.host,
+          el("div", { class: "empty" }, el("h2", {}, "This session can not be shown"), el("p", {}, problem.message)),
+        );
       if (problem.status !== 404) this.again();
     }
   }

@@ -12,7 +12,12 @@ export class Skeleton2d {
     this.host = host;
     this.stage = new Stage();
     this.view = "side";
-    this.root = svg("svg", { viewBox: `0 0 ${WIDTH} 460`, role: "img", "aria-label": "Stick figure of the legs", class: "paper" });
+    this.root = svg("svg", {
+      viewBox: `0 0 ${WIDTH} 460`,
+      role: "img",
+      "aria-label": "Stick figure of the legs",
+      class: "paper",
+    });
     this.root.append(svg("line", { x1: 30, x2: WIDTH - 30, y1: FLOOR, y2: FLOOR, stroke: GHOST, "stroke-width": 2 }));
     this.trunk = this.line(GHOST, 10);
     this.legs = {};
@@ -32,7 +37,12 @@ export class Skeleton2d {
 
   line(colour, width, side) {
     const dash = side === "right" ? "26 14" : null;
-    const node = svg("line", { stroke: colour, "stroke-width": width, "stroke-linecap": dash ? "butt" : "round", "stroke-dasharray": dash });
+    const node = svg("line", {
+      stroke: colour,
+      "stroke-width": width,
+      "stroke-linecap": dash ? "butt" : "round",
+      "stroke-dasharray": dash,
+    });
     this.root.append(node);
     return node;
   }
@@ -49,7 +59,11 @@ export class Skeleton2d {
     this.drawn = now;
     const at = (name) => this.project(figure.points[name]);
     draw(this.trunk, at("pelvis_top"), at("neck"));
-    draw(this.pelvis, this.view === "side" ? at("pelvis_top") : at("hip_left"), this.view === "side" ? at("hip_right") : at("hip_right"));
+    draw(
+      this.pelvis,
+      this.view === "side" ? at("pelvis_top") : at("hip_left"),
+      this.view === "side" ? at("hip_right") : at("hip_right"),
+    );
     for (const side of SIDES) {
       const leg = this.legs[side];
       draw(leg.thigh, at(`hip_${side}`), at(`knee_${side}`));

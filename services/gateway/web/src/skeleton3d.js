@@ -2,9 +2,8 @@
 import {
   AmbientLight,
   CanvasTexture,
-  CapsuleGeometry,
   CircleGeometry,
-  Color,
+  CylinderGeometry,
   DirectionalLight,
   Group,
   Mesh,
@@ -12,6 +11,7 @@ import {
   MeshStandardMaterial,
   PerspectiveCamera,
   PolarGridHelper,
+  SRGBColorSpace,
   Scene,
   SphereGeometry,
   Sprite,
@@ -24,19 +24,46 @@ import { OrbitControls } from "three/examples/jsm/controls/OrbitControls.js";
 import { Stage, SIDES, between } from "./figure.js";
 import { GHOST, INVALID, PELVIS, SIDE_COLOUR } from "./palette.js";
 
+// Radii in m at the upper and lower end. `bone` names the segment whose validity counts; null is not measured.
 const BONES = [
   ...SIDES.flatMap((side) => [
-    { from: `hip_${side}`, to: `knee_${side}`, radius: 0.046, bone: `thigh_${side}`, colour: SIDE_COLOUR[side] },
-    { from: `knee_${side}`, to: `ankle_${side}`, radius: 0.036, bone: `shank_${side}`, colour: SIDE_COLOUR[side] },
-    { from: `ankle_${side}`, to: `toe_${side}`, radius: 0.024, bone: null, colour: GHOST },
-    { from: `hip_${side}`, to: "pelvis_top", radius: 0.04, bone: "pelvis", colour: PELVIS },
+    {
+      from: `hip_${side}`,
+      to: `knee_${side}`,
+      radii: [0.058, 0.042],
+      bone: `thigh_${side}`,
+      colour: SIDE_COLOUR[side],
+    },
+    {
+      from: `knee_${side}`,
+      to: `ankle_${side}`,
+      radii: [0.044, 0.026],
+      bone: `shank_${side}`,
+      colour: SIDE_COLOUR[side],
+    },
+    { from: `ankle_${side}`, to: `toe_${side}`, radii: [0.026, 0.02], bone: null, colour: GHOST },
+    { from: "pelvis_top", to: `hip_${side}`, radii: [0.05, 0.05], bone: "pelvis", colour: PELVIS },
   ]),
-  { from: "hip_left", to: "hip_right", radius: 0.04, bone: "pelvis", colour: PELVIS },
-  { from: "pelvis_top", to: "neck", radius: 0.05, bone: null, colour: GHOST },
+  { from: "hip_left", to: "hip_right", radii: [0.05, 0.05], bone: "pelvis", colour: PELVIS },
+  { from: "neck", to: "pelvis_top", radii: [0.085, 0.06], bone: null, colour: GHOST },
 ];
+const JOINTS = [
+  ...SIDES.flatMap((side) => [
+    { at: `hip_${side}`, radius: 0.06, bone: `thigh_${side}`, colour: SIDE_COLOUR[side] },
+    { at: `knee_${side}`, radius: 0.05, bone: `shank_${side}`, colour: SIDE_COLOUR[side] },
+    { at: `ankle_${side}`, radius: 0.034, bone: `shank_${side}`, colour: SIDE_COLOUR[side] },
+    { at: `toe_${side}`, radius: 0.02, bone: null, colour: GHOST },
+  ]),
+  { at: "pelvis_top", radius: 0.052, bone: "pelvis", colour: PELVIS },
+  { at: "neck", radius: 0.085, bone: null, colour: GHOST },
+];
+const HEAD = { above_neck_m: 0.19, radius: 0.1 };
 
-const EYES = { side: [0, 0.9, 3.1], front: [3.1, 0.9, 0], back: [-3.1, 0.9, 0] };
-const LOOK_AT = new Vector3(0, 0.72, 0);
+const DIRECTIONS = { side: [0, 0.07, 1], front: [1, 0.07, 0], back: [-1, 0.07, 0] };
+const LOOK_AT = new Vector3(0, 0.84, 0);
+const VIEW_ANGLE_DEG = 30;
+const SHOWN_HEIGHT_M = 1.86;
+const SHOWN_WIDTH_M = 1.3;
 const UP = new Vector3(0, 1, 0);
 const FRAME_S = 0.05;
 
@@ -48,12 +75,11 @@ export class Skeleton3d {
     host.append(this.renderer.domElement);
     this.scene = new Scene();
     this.body = new Group();
-    this.camera = new PerspectiveCamera(34, 1, 0.1, 30);
+    this.camera = new PerspectiveCamera(VIEW_ANGLE_DEG, 1, 0.1, 30);
     this.controls = new OrbitControls(this.camera, this.renderer.domElement);
     this.stage = new Stage();
     this.furnish();
     this.buildBody();
-    this.look("side");
     this.controls.addEventListener("change", () => this.wake());
     this.resizing = new ResizeObserver(() => this.resize());
     this.resizing.observe(host);
@@ -73,20 +99,20 @@ export class Skeleton3d {
     this.scene.add(grid, this.shadow);
     this.controls.enablePan = false;
     this.controls.minDistance = 1.6;
-    this.controls.maxDistance = 6;
+    this.controls.maxDistance = 8;
     this.controls.maxPolarAngle = Math.PI / 2;
   }
 
   buildBody() {
-    this.bones = BONES.map((bone) => {
-      const ghost = bone.bone === null;
-      const material = new MeshStandardMaterial({ color: bone.colour, roughness: 0.55, transparent: ghost, opacity: ghost ? 0.6 : 1 });
-      const mesh = new Mesh(new CapsuleGeometry(bone.radius, 1, 8, 20), material);
-      this.body.add(mesh);
-      return { ...bone, mesh };
-    });
-    this.head = new Mesh(new SphereGeometry(0.095, 28, 20), new MeshStandardMaterial({ color: GHOST, roughness: 0.6, transparent: true, opacity: 0.6 }));
-    this.body.add(this.head);
+    this.bones = BONES.map((bone) => ({
+      ...bone,
+      mesh: this.solid(new CylinderGeometry(bone.radii[0], bone.radii[1], 1, 24, 1, true), bone),
+    }));
+    this.joints = JOINTS.map((joint) => ({
+      ...joint,
+      mesh: this.solid(new SphereGeometry(joint.radius, 24, 18), joint),
+    }));
+    this.head = this.solid(new SphereGeometry(HEAD.radius, 28, 20), { bone: null, colour: GHOST });
     this.letters = SIDES.map((side) => {
       const sprite = letter(side === "left" ? "L" : "R", SIDE_COLOUR[side]);
       this.body.add(sprite);
@@ -95,9 +121,23 @@ export class Skeleton3d {
     this.body.visible = false;
   }
 
+  solid(geometry, { bone, colour }) {
+    const material = new MeshStandardMaterial({ color: colour, roughness: 0.6 });
+    if (bone === null) Object.assign(material, { transparent: true, opacity: 0.45 });
+    const mesh = new Mesh(geometry, material);
+    this.body.add(mesh);
+    return mesh;
+  }
+
   /** Side, front or back view. */
   look(from) {
-    this.camera.position.set(...EYES[from]);
+    const height = Math.max(SHOWN_HEIGHT_M, SHOWN_WIDTH_M / this.camera.aspect);
+    const distance = height / 2 / Math.tan((VIEW_ANGLE_DEG * Math.PI) / 360);
+    this.camera.position
+      .set(...DIRECTIONS[from])
+      .normalize()
+      .multiplyScalar(distance)
+      .add(LOOK_AT);
     this.controls.target.copy(LOOK_AT);
     this.controls.update();
     this.wake();
@@ -159,14 +199,15 @@ export class Skeleton3d {
     // The body is turned back by the slow heading, so that "side" stays side when the patient turns round.
     this.body.rotation.y = -this.stage.heading;
     this.body.position.y = 0.05 - this.stage.ground;
-    for (const bone of this.bones) {
-      span(bone.mesh, points[bone.from], points[bone.to]);
-      if (bone.bone !== null) bone.mesh.material.color.set(valid[bone.bone] ? bone.colour : INVALID);
+    for (const bone of this.bones) span(bone.mesh, points[bone.from], points[bone.to]);
+    for (const joint of this.joints) joint.mesh.position.fromArray(points[joint.at]);
+    for (const { bone, mesh, colour } of [...this.bones, ...this.joints]) {
+      if (bone !== null) mesh.material.color.set(valid[bone] ? colour : INVALID);
     }
-    this.head.position.set(points.neck[0], points.neck[1] + 0.12, points.neck[2]);
+    this.head.position.fromArray(points.neck).y += HEAD.above_neck_m;
     for (const { side, sprite } of this.letters) {
-      const [x, y, z] = points[`ankle_${side}`];
-      sprite.position.set(x - 0.13, y + 0.02, z);
+      const [x, y, z] = points[`toe_${side}`];
+      sprite.position.set(x + 0.08, y + 0.03, z);
     }
   }
 
@@ -176,6 +217,8 @@ export class Skeleton3d {
     this.renderer.setSize(width, height);
     this.camera.aspect = width / height;
     this.camera.updateProjectionMatrix();
+    if (!this.framed) this.look("side");
+    this.framed = true;
     this.wake();
   }
 }
@@ -199,9 +242,11 @@ function letter(text, colour) {
   pen.font = "700 46px system-ui, sans-serif";
   pen.textAlign = "center";
   pen.textBaseline = "middle";
-  pen.fillStyle = `#${new Color(colour).getHexString()}`;
+  pen.fillStyle = colour;
   pen.fillText(text, 32, 34);
-  const sprite = new Sprite(new SpriteMaterial({ map: new CanvasTexture(canvas), depthTest: false }));
+  const map = new CanvasTexture(canvas);
+  map.colorSpace = SRGBColorSpace;
+  const sprite = new Sprite(new SpriteMaterial({ map, depthTest: false, toneMapped: false }));
   sprite.scale.setScalar(0.11);
   return sprite;
 }

@@ -19,7 +19,22 @@ export class StartDialog {
     this.patient = el("select", { id: "patient" });
     this.problem = el("p", { class: "banner", role: "alert", hidden: true });
     this.go = el("button", { class: "primary", type: "submit" }, "Start");
-    const form = el("form", { method: "dialog", onsubmit: (event) => this.submit(event) }, el("h2", {}, "Start a session"), field("Source", this.source), field("Speed", this.speed), field("Estimator", this.estimator), field("Patient", this.patient), this.problem, el("div", { class: "actions" }, el("button", { type: "button", onclick: () => this.node.close() }, "Cancel"), this.go));
+    const form = el(
+      "form",
+      { method: "dialog", onsubmit: (event) => this.submit(event) },
+      el("h2", {}, "Start a session"),
+      field("Source", this.source),
+      field("Speed", this.speed),
+      field("Estimator", this.estimator),
+      field("Patient", this.patient),
+      this.problem,
+      el(
+        "div",
+        { class: "actions" },
+        el("button", { type: "button", onclick: () => this.node.close() }, "Cancel"),
+        this.go,
+      ),
+    );
     this.node = el("dialog", { "aria-label": "Start a session" }, form);
     document.body.append(this.node);
   }
@@ -30,17 +45,37 @@ export class StartDialog {
     try {
       const [offer, patients] = await Promise.all([get("/sources"), get("/patients?limit=100")]);
       this.offer(offer, patients.items);
-      if (!offer.ready) this.complain("No ingest service answers just now. Start the services with “ambula up”, then try again.");
+      if (!offer.ready)
+        this.complain("No ingest service answers just now. Start the services with “ambula up”, then try again.");
     } catch (problem) {
       this.complain(problem.message);
     }
   }
 
   offer({ sources, estimators }, patients) {
-    const groups = Object.entries(KINDS).map(([kind, label]) => [label, sources.filter((source) => source.kind === kind)]);
-    fill(this.source, ...groups.filter(([, some]) => some.length > 0).map(([label, some]) => el("optgroup", { label }, ...some.map((source) => el("option", { value: source.id }, source.title)))));
-    fill(this.estimator, ...estimators.map((each) => el("option", { value: each.name }, each.default ? `${each.name} (default)` : each.name)));
-    fill(this.patient, el("option", { value: "" }, "assign later"), ...patients.map((patient) => el("option", { value: patient.code }, patient.code)));
+    const groups = Object.entries(KINDS).map(([kind, label]) => [
+      label,
+      sources.filter((source) => source.kind === kind),
+    ]);
+    fill(
+      this.source,
+      ...groups
+        .filter(([, some]) => some.length > 0)
+        .map(([label, some]) =>
+          el("optgroup", { label }, ...some.map((source) => el("option", { value: source.id }, source.title))),
+        ),
+    );
+    fill(
+      this.estimator,
+      ...estimators.map((each) =>
+        el("option", { value: each.name }, each.default ? `${each.name} (default)` : each.name),
+      ),
+    );
+    fill(
+      this.patient,
+      el("option", { value: "" }, "assign later"),
+      ...patients.map((patient) => el("option", { value: patient.code }, patient.code)),
+    );
   }
 
   async submit(event) {

@@ -5,23 +5,21 @@ const DEGREES = 180 / Math.PI;
 /** rad to degrees; null stays null. */
 export const degrees = (radians) => (radians === null || radians === undefined ? null : radians * DEGREES);
 
+const PERCENT = { factor: 100, unit: "%", digits: 0 };
 const SHOWN = {
   rad: { factor: DEGREES, unit: "°", digits: 1 },
-  "rad/s": { factor: DEGREES, unit: "°/s", digits: 0 },
   m: { factor: 1, unit: "m", digits: 2 },
   "m/s": { factor: 1, unit: "m/s", digits: 2 },
   s: { factor: 1, unit: "s", digits: 2 },
-  fraction: { factor: 100, unit: "%", digits: 0 },
-  dimensionless: { factor: 1, unit: "", digits: 2 },
-  ratio: { factor: 1, unit: "", digits: 2 },
-  "1/min": { factor: 1, unit: "/min", digits: 0 },
   "steps/min": { factor: 1, unit: "steps/min", digits: 0 },
 };
 
-/** How a unit of the wire is shown: factor, unit, digits. */
-export function shown(unit, name = "") {
-  if (name.endsWith("_fraction")) return SHOWN.fraction;
-  return SHOWN[unit] ?? { factor: 1, unit, digits: 2 };
+/** How a metric of that unit is shown: factor, unit, digits. Shares of one become per cent. */
+export function shown(unit, name) {
+  if (name.endsWith("_fraction")) return PERCENT;
+  if (name.endsWith("_cv")) return { ...PERCENT, digits: 1 };
+  if (name.startsWith("strides_")) return { factor: 1, unit: "", digits: 0 };
+  return SHOWN[unit] ?? { factor: 1, unit: unit === "1" ? "" : unit, digits: 2 };
 }
 
 /** A number for the screen with a true minus sign; a dash for what is not known. */
@@ -37,7 +35,9 @@ export function clock(seconds) {
   const whole = Math.max(0, Math.floor(seconds));
   const rest = String(whole % 60).padStart(2, "0");
   const minutes = Math.floor(whole / 60);
-  return minutes < 60 ? `${minutes}:${rest}` : `${Math.floor(minutes / 60)}:${String(minutes % 60).padStart(2, "0")}:${rest}`;
+  return minutes < 60
+    ? `${minutes}:${rest}`
+    : `${Math.floor(minutes / 60)}:${String(minutes % 60).padStart(2, "0")}:${rest}`;
 }
 
 /** Bytes as kB or MB. */

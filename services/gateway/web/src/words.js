@@ -16,15 +16,40 @@ export function jointName(name) {
 }
 
 const METRICS = {
-  cadence_steps_per_min: "Cadence",
   stance_fraction: "Stance",
   knee_flexion_peak_swing: "Peak knee flexion in swing",
+  knee_flexion_at_contact: "Knee flexion at contact",
+  knee_flexion_range: "Knee flexion range",
+  hip_flexion_range: "Hip flexion range",
+  hip_flexion_peak: "Peak hip flexion",
+  hip_extension_peak: "Peak hip extension",
+  strides_counted: "Strides counted",
+  strides_turning: "Strides while turning",
+  strides_rejected: "Strides left out",
 };
+const RATIO = "_ratio_larger_to_smaller";
+const VARIATION = "_cv";
+const DEVIATION = "_sd";
+const HEADLINES = ["walking_speed", "cadence", "stride_length", "stride_time"];
 
 /** Name of a metric for the screen. */
 export function metricName(name) {
+  for (const suffix of [RATIO, VARIATION, DEVIATION])
+    if (name.endsWith(suffix)) return metricName(name.slice(0, -suffix.length));
   return METRICS[name] ?? jointName(name)[0];
 }
+
+/** Where a metric belongs in a report; null for those that the spread beside the mean says already. */
+export function metricGroup({ name, side }) {
+  if (name.endsWith(DEVIATION)) return null;
+  if (name.endsWith(RATIO)) return "symmetry";
+  if (name.endsWith(VARIATION)) return side === null ? "variability" : null;
+  if (side !== null) return name.startsWith("strides_") ? "counts" : "sides";
+  return "headlines";
+}
+
+/** Order of the headlines; unknown ones come last. */
+export const headlineRank = ({ name }) => (HEADLINES.includes(name) ? HEADLINES.indexOf(name) : HEADLINES.length);
 
 /** What a sensor's state means to a therapist. */
 export const SENSOR_WORDS = {
@@ -57,13 +82,20 @@ function judge({ age_s, phase, sensors, segments, silent, heard }) {
     if (heard && !estimating && !silent.includes("archive")) {
       return { word: "Archive only (recording continues)", tone: "check" };
     }
-    return { word: `Delayed (${age_s < 100 ? age_s.toFixed(1) : Math.round(age_s)} s)`, tone: age_s > 5 ? "lost" : "check" };
+    return {
+      word: `Delayed (${age_s < 100 ? age_s.toFixed(1) : Math.round(age_s)} s)`,
+      tone: age_s > 5 ? "lost" : "check",
+    };
   }
   if (age_s === null) return { word: "No data yet", tone: "wait" };
   const lost = sensors.find((each) => each.state === "missing");
   if (lost) return { word: `${segmentName(segments[lost.sensor] ?? lost.sensor)} sensor lost`, tone: "lost" };
   const doubtful = sensors.find((each) => each.state === "stuck" || each.state === "rejected");
-  if (doubtful) return { word: `Check ${segmentName(segments[doubtful.sensor] ?? doubtful.sensor).toLowerCase()} sensor`, tone: "check" };
+  if (doubtful)
+    return {
+      word: `Check ${segmentName(segments[doubtful.sensor] ?? doubtful.sensor).toLowerCase()} sensor`,
+      tone: "check",
+    };
   if (phase === "waiting") return { word: "No data yet", tone: "wait" };
   if (phase === "calibrating") return { word: "Calibrating - stand still", tone: "wait" };
   return { word: "Live", tone: "good" };

@@ -1,0 +1,63 @@
+"""Control over the bus: commands that an ingest answers."""
+
+import json
+from typing import Any
+
+from schemas.session import SessionDescription
+from schemas.signals import command_key
+from services.bus.connection import RemoteError
+from services.gateway.bus_feed import BusLink
+from services.gateway.control import ControlRefused, ControlUnavailable, Source, StartRequest
+
+START_TIMEOUT_S = 20.0
+"""Opening a long recording takes seconds."""
+TIMEOUT_S = 3.0
+
+
+class BusControl:
+    """See `services.gateway.control.Control`."""
+
+    def __init__(self, link: BusLink) -> None:
+        self._link = link
+
+    def start(self, request: StartRequest) -> SessionDescription:
+        """Ask an ingest to run a source."""
+        order = {
+            "session": request.session,
+            "source": request.source,
+            "speed": request.speed,
+            "estimator": request.estimator,
+        }
+        try:
+            return SessionDescription.model_validate(self._order("start", order, START_TIMEOUT_S))
+        except ValueError as error:
+            raise ControlRefused(f"the ingest answered with something else than a session: {error}") from error
+
+    def stop(self, session: str) -> None:
+        """Ask the ingest that runs the session to end it."""
+        self._order("stop", {"session": session}, TIMEOUT_S)
+
+    def recordings(self) -> list[Source]:
+        """Ask an ingest what it has."""
+        answer = self._order("sources", {}, TIMEOUT_S)
+        return [
+            Source(each["name"], each["title"], "recording", each.get("duration_s"))
+            for each in answer.get("recordings", [])
+        ]
+
+    def _order(self, command: str, body: dict[str, Any], timeout_s: float) -> dict[str, Any]:
+        bus = self._link.bus
+        if bus is None:
+            raise ControlUnavailable("The gateway has no connection to the router yet.")
+        key = command_key(bus.settings.site, "ingest", command)
+        try:
+            answers = bus.ask(key, body=json.dumps(body).encode(), timeout_s=timeout_s)
+        except RemoteError as error:
+            raise ControlRefused(str(error)) from error
+        if not answers:
+            raise ControlUnavailable("No ingest service answers.")
+        answer = json.loads(answers[0].payload or b"{}")
+        if "error" in answer:
+            raise ControlRefused(str(answer["error"]))
+        assert isinstance(answer, dict)
+        return answer

@@ -1,0 +1,44 @@
+"""One gateway process, from settings to exit."""
+
+import logging
+
+import uvicorn
+
+from services.bus.logs import event, set_up_logging
+from services.bus.settings import BusSettings
+from services.gateway.app import create_app
+from services.gateway.bus_control import BusControl
+from services.gateway.bus_feed import BusFeed, BusLink
+from services.gateway.database import DatabaseError
+from services.gateway.live.hub import LiveHub
+from services.gateway.settings import GatewaySettings
+
+logger = logging.getLogger(__name__)
+
+
+def serve() -> int:
+    """Serve until SIGTERM or Ctrl-C. Exit code."""
+    set_up_logging("gateway")
+    settings, live, link = GatewaySettings(), LiveHub(), BusLink()
+    try:
+        app = create_app(settings, live, BusControl(link))
+    except DatabaseError as error:
+        logger.error(event("no_database", error=error))
+        return 1
+    feed = BusFeed(BusSettings(), link, live, app.state.gateway.keeper)
+    feed.start()
+    logger.info(event("serving", url=settings.url))
+    try:
+        uvicorn.run(
+            app,
+            host=settings.http_host,
+            port=settings.http_port,
+            server_header=False,
+            access_log=False,
+            log_config=None,
+            ws_max_size=live.parameters.most_socket_bytes,
+            timeout_graceful_shutdown=2,
+        )
+    finally:
+        feed.stop()
+    return 0
