@@ -19,6 +19,8 @@ from services.biomech.lower_body import LowerBodyModel, SensorMount
 Array = NDArray[np.float64]
 
 YAW_MODES = {"none": 0, "world": 1, "relative": 2}
+PAD = 4
+"""Doubles in a vector register."""
 NOMINAL_DT_S = 0.01
 """s. Virtual measurements are stated for 100 Hz; at other rates their variance is scaled so that the information
 they give per second stays the same."""
@@ -81,12 +83,15 @@ class LowerBodyEkf:
         n, S = len(model.dofs), len(mounts)
         N = 3 * (n - model.first_rotation) + model.first_rotation
         self.x = np.zeros((3, n))
-        self.P = np.diag(self._start_variance(N))
+        self._padded = np.zeros((N, padded_length(N)))
+        self.P = self._padded[:, :N]
+        self.P[:] = np.diag(self._start_variance(N))
         self._rest = np.zeros((3, n))
         self._motion = empty_motion(n)
+        M = self._padded.shape[1]
         self._update = Update(
-            np.zeros((S, 6, N)), np.zeros((S, 6)), np.zeros((3, N)), np.zeros(3),
-            np.zeros(N), np.zeros((6, N)), np.zeros((6, 6)), np.zeros(6),
+            np.zeros((S, 6, M)), np.zeros((S, 6)), np.zeros((6, M)), np.zeros(6), np.zeros(6),
+            np.zeros(M), np.zeros((6, M)), np.zeros((6, 6)), np.zeros(6),
         )  # fmt: skip
         self._variances = _noise(model, S, noise)
 
@@ -105,7 +110,7 @@ class LowerBodyEkf:
             self._rest[:] = 0.0
             options = options._replace(yaw_mode=0)
         step(
-            self.x, self.P, dt_s, jerk, samples, fresh, self.bias, self._rest,
+            self.x, self._padded, dt_s, jerk, samples, fresh, self.bias, self._rest,
             self.body, self.sensors, self.columns, options, variances, self._motion, self._update,
         )  # fmt: skip
 
@@ -142,6 +147,11 @@ class LowerBodyEkf:
         return variance
 
 
+def padded_length(N: int) -> int:
+    """Length of the covariance's rows: whole vector registers."""
+    return -(-N // PAD) * PAD
+
+
 def _options(model: LowerBodyModel, measurement: MeasurementModel) -> Options:
     bodies = [model.last_joint(s) for s in (Segment.PELVIS, Segment.THIGH_RIGHT, Segment.THIGH_LEFT)]
     return Options(
@@ -171,7 +181,9 @@ def _columns(model: LowerBodyModel, sensors: Sensors, measurement: MeasurementMo
             accel.append(rotations + velocity + accelerations)
         else:
             accel.append(list(rotations))
-    return Columns(*_ragged(gyro), *_ragged(accel))
+    thighs = (Segment.PELVIS, Segment.THIGH_RIGHT, Segment.THIGH_LEFT)
+    yaw = np.array([j - t for segment in thighs for j in model.joints_of(segment)], dtype=np.int64)
+    return Columns(*_ragged(gyro), *_ragged(accel), yaw)
 
 
 def _ragged(rows: list[list[int]]) -> tuple[NDArray[np.int64], NDArray[np.int64]]:

@@ -9,11 +9,11 @@ from services.biomech.kernels.covariance import (
     predict_state,
     project,
     subtract_gain,
-    update_scalar,
     whiten,
 )
 from services.biomech.kernels.kinematics import accelerate, orient
 from services.biomech.kernels.measurement import (
+    column,
     dynamic_rows,
     gravity_rows,
     gyro_rows,
@@ -44,58 +44,68 @@ def update_sensor(s: int, P: Array, columns: Columns, noise: Noise, update: Upda
     accel, n_accel = columns.accel[s], columns.accel_count[s]
     project(P, H, 0, 3, gyro, n_gyro, update.W)
     project(P, H, 3, 6, accel, n_accel, update.W)
-    innovation_covariance(H, 0, 3, gyro, n_gyro, noise.gyro[s], e, update)
-    innovation_covariance(H, 3, 6, accel, n_accel, noise.accel[s], e, update)
+    innovation_covariance(H, e, 6, update)
+    for i in range(3):
+        update.L[i, i] += noise.gyro[s]
+        update.L[3 + i, 3 + i] += noise.accel[s]
     whiten(6, update)
     subtract_gain(P, 6, update)
 
 
 @kernel
-def yaw_rows(body: Body, options: Options, motion: Motion, update: Update) -> int:
-    """Rows of the virtual yaw measurement (Joukov eq. 22); how many there are."""
-    H, e = update.yaw_H, update.yaw_innovation
-    H[:, :] = 0.0
-    bodies = options.yaw_bodies
-    if options.yaw_mode == 1:
-        for i in range(3):
+def yaw_rows(
+    P: Array, body: Body, columns: Columns, options: Options, motion: Motion, noise: Noise, update: Update
+) -> int:
+    """The virtual yaw measurement (Joukov eq. 22) as the first virtual rows; how many there are.
+
+    Yaw is measured as zero, so that slow gyro drift about the vertical does not turn the legs.
+    """
+    H, e, bodies = update.virtual_H, update.virtual_innovation, options.yaw_bodies
+    rows = 3 if options.yaw_mode == 1 else 2
+    for i in range(rows):
+        for c in columns.yaw:
+            H[i, c] = 0.0
+        if rows == 3:
             e[i] = -yaw_row(bodies[i], body, motion, 1.0, H[i])
-        return 3
-    for i in range(2):
-        pelvis = yaw_row(bodies[0], body, motion, -1.0, H[i])
-        thigh = yaw_row(bodies[i + 1], body, motion, 1.0, H[i])
-        e[i] = (pelvis - thigh + np.pi) % (2.0 * np.pi) - np.pi
-    return 2
+        else:
+            pelvis = yaw_row(bodies[0], body, motion, -1.0, H[i])
+            thigh = yaw_row(bodies[i + 1], body, motion, 1.0, H[i])
+            e[i] = (pelvis - thigh + np.pi) % (2.0 * np.pi) - np.pi
+        update.virtual_variance[i] = noise.yaw
+    project(P, H, 0, rows, columns.yaw, columns.yaw.size, update.W)
+    return rows
 
 
 @kernel
-def update_yaw(P: Array, body: Body, options: Options, motion: Motion, noise: Noise, update: Update) -> None:
-    """Measure yaw as zero, so that slow gyro drift about the vertical does not turn the legs."""
-    rows = yaw_rows(body, options, motion, update)
-    t = body.translations
-    # Position columns of pelvis and hips lie side by side at the front of the covariance.
-    for row in range(rows):
-        for k in range(P.shape[0]):
-            update.W[row, k] = 0.0
-    last = body.parent.size - t
-    for row in range(rows):
-        for c in range(last):
-            h = update.yaw_H[row, c]
-            if h != 0.0:
-                for k in range(P.shape[0]):
-                    update.W[row, k] += h * P[c, k]
-    for row in range(rows):
-        y = update.yaw_innovation[row]
-        for c in range(last):
-            y -= update.yaw_H[row, c] * update.dx[c]
-        update.y[row] = y
-        for other in range(row + 1):
-            v = 0.0
-            for c in range(last):
-                v += update.yaw_H[row, c] * update.W[other, c]
-            update.L[row, other] = v
-        update.L[row, row] += noise.yaw
+def update_virtual(P: Array, rows: int, update: Update) -> None:
+    """Fuse the virtual rows collected in `update`, and clear them."""
+    innovation_covariance(update.virtual_H, update.virtual_innovation, rows, update)
+    for i in range(rows):
+        update.L[i, i] += update.virtual_variance[i]
     whiten(rows, update)
     subtract_gain(P, rows, update)
+    update.virtual_H[:rows] = 0.0
+
+
+@kernel
+def rest_rows(x: Array, P: Array, rest: Array, rows: int, translations: int, update: Update) -> int:
+    """Measurements of single states as zero, behind the `rows` there are; six at a time are fused."""
+    n, W = x.shape[1], update.W
+    for order in range(3):
+        for j in range(translations, n):
+            if rest[order, j] <= 0.0:
+                continue
+            c = column(order, j, translations, n)
+            update.virtual_H[rows, c] = 1.0
+            update.virtual_innovation[rows] = -x[order, j]
+            update.virtual_variance[rows] = rest[order, j]
+            for k in range(P.shape[1]):
+                W[rows, k] = P[c, k]
+            rows += 1
+            if rows == 6:
+                update_virtual(P, rows, update)
+                rows = 0
+    return rows
 
 
 @kernel
@@ -138,17 +148,14 @@ def step(
     for s in range(sensors.joint.size):
         if fresh[s]:
             update_sensor(s, P, columns, noise, update)
-    if options.yaw_mode > 0:
-        update_yaw(P, body, options, motion, noise, update)
     n, t = x.shape[1], body.translations
-    for order in range(3):
-        for j in range(t, n):
-            if rest[order, j] > 0.0:
-                col = order * (n - t) + j - t
-                update_scalar(P, col, -x[order, j], rest[order, j], update.dx, update.W[0])
+    rows = 0
+    if options.yaw_mode > 0:
+        rows = yaw_rows(P, body, columns, options, motion, noise, update)
+    rows = rest_rows(x, P, rest, rows, t, update)
+    if rows > 0:
+        update_virtual(P, rows, update)
     for j in range(n):
         for order in range(3):
-            if j >= t:
-                x[order, j] += update.dx[order * (n - t) + j - t]
-            elif order == 2:
-                x[order, j] += update.dx[3 * (n - t) + j]
+            if j >= t or order == 2:
+                x[order, j] += update.dx[column(order, j, t, n)]

@@ -4,7 +4,8 @@ S sensors, N = 3 r + t states with a covariance.
 Joints are ordered from the root outwards, translations first. The state is x (3, n): position, velocity and
 acceleration of each joint. Columns of the covariance: rotation i has columns i, r + i and 2 r + i for position,
 velocity and acceleration; translation k has column 3 r + k for its acceleration alone, because no inertial sensor
-sees where the pelvis is or how fast it travels.
+sees where the pelvis is or how fast it travels. The covariance, and every row that multiplies it, is M >= N long;
+the columns behind N stay zero and let the compiler run over whole vector registers.
 """
 
 from typing import NamedTuple
@@ -44,6 +45,7 @@ class Columns(NamedTuple):
     gyro_count: Indices  # (S,)
     accel: Indices  # (S, N)
     accel_count: Indices  # (S,)
+    yaw: Indices  # positions of pelvis and hips
 
 
 class Options(NamedTuple):
@@ -88,11 +90,12 @@ def empty_motion(joints: int) -> Motion:
 class Update(NamedTuple):
     """Scratch: rows and gains of the measurement update."""
 
-    H: Array  # (S, 6, N)
+    H: Array  # (S, 6, M)
     innovation: Array  # (S, 6)
-    yaw_H: Array  # (3, N)
-    yaw_innovation: Array  # (3,)
-    dx: Array  # (N,)
-    W: Array  # (6, N)
+    virtual_H: Array  # (6, M)
+    virtual_innovation: Array  # (6,)
+    virtual_variance: Array  # (6,)
+    dx: Array  # (M,)
+    W: Array  # (6, M)
     L: Array  # (6, 6)
     y: Array  # (6,)
