@@ -31,18 +31,19 @@ class HostedNode:
 
     def accept(self, message: Message) -> list[Message]:
         """Take the next message of a stream, in order; the messages it leads to, numbered."""
-        envelope = message.envelope
-        self.inputs[message.stream] = StreamPosition(
-            epoch=envelope.epoch, sequence=envelope.sequence, ended=envelope.final
-        )
-        self.epoch = max(self.epoch, envelope.epoch)
-        self.captured_ns = max(self.captured_ns, envelope.captured_ns)
-        if not envelope.final:
+        self.skip(message.stream, message.envelope)
+        if not message.envelope.final:
             return [self._number(output) for output in self.node.step(message)]
         if not all(stream in self.inputs and self.inputs[stream].ended for stream in self.node.streams):
             return []
         last = [self._number(output) for output in self.node.finish()]
         return last + [self._close(stream) for stream in self.outputs]
+
+    def skip(self, stream: Stream, envelope: Envelope) -> None:
+        """Count the next message of a stream as done without showing it to the node: it could not be read."""
+        self.inputs[stream] = StreamPosition(epoch=envelope.epoch, sequence=envelope.sequence, ended=envelope.final)
+        self.epoch = max(self.epoch, envelope.epoch)
+        self.captured_ns = max(self.captured_ns, envelope.captured_ns)
 
     def checkpoint(self) -> Checkpoint:
         """Freeze between two messages."""

@@ -19,7 +19,7 @@ class Hole(NamedTuple):
 
 @dataclass
 class InboxCounts:
-    """received + lost = highest sequence + 1, once the inbox is empty."""
+    """received + lost = highest sequence + 1 (summed over epochs), once nothing waits."""
 
     received: int = 0
     recovered: int = 0
@@ -31,8 +31,8 @@ class InboxCounts:
 class OrderedInbox(Generic[Item]):
     """Puts a stream's messages in order.
 
-    A message of an older epoch, or with a sequence number that was delivered, is a duplicate. A newer epoch
-    is a producer that started again from zero: what the older one still owes is given up.
+    A message of an older epoch, or with a sequence number that was delivered, is a duplicate. A newer epoch is a
+    producer that started again from zero: what waits of the older one is delivered, its holes are given up.
     `most_waiting` bounds the memory: past it the oldest hole is given up.
     """
 
@@ -44,16 +44,15 @@ class OrderedInbox(Generic[Item]):
 
     def accept(self, envelope: Envelope, item: Item, *, recovered: bool = False) -> list[tuple[Envelope, Item]]:
         """Take a message; the messages that are now in order."""
-        if self.position is None or envelope.epoch > self.position.epoch:
-            self._start_epoch(envelope.epoch)
+        ready = self._enter_epoch(envelope.epoch)
         assert self.position is not None
         known = envelope.epoch < self.position.epoch or envelope.sequence <= self.position.sequence
         if known or envelope.sequence in self._waiting:
             self.counts.duplicated += 1
-            return []
+            return ready
         self.counts.recovered += recovered
         self._waiting[envelope.sequence] = (envelope, item)
-        ready = self._drain()
+        ready += self._drain()
         while len(self._waiting) > self.most_waiting:
             ready += self.give_up()
         return ready
@@ -64,19 +63,28 @@ class OrderedInbox(Generic[Item]):
             return None
         return Hole(self.position.epoch, self.position.sequence + 1, min(self._waiting) - 1)
 
-    def give_up(self) -> list[tuple[Envelope, Item]]:
-        """Nobody has the messages of the first hole any more: count them lost and go on behind it."""
+    def give_up(self, through: int | None = None) -> list[tuple[Envelope, Item]]:
+        """Nobody has the first hole, or its part up to `through`, any more: count it lost and go on behind it."""
         hole = self.hole()
         if hole is None or self.position is None:
+            return []
+        if through is not None:
+            hole = hole._replace(last=min(hole.last, through))
+        if hole.last < hole.first:
             return []
         self.given_up.append(hole)
         self.counts.lost += hole.last - hole.first + 1
         self.position = self.position.model_copy(update={"sequence": hole.last})
         return self._drain()
 
-    def _start_epoch(self, epoch: int) -> None:
-        self._waiting.clear()
+    def _enter_epoch(self, epoch: int) -> list[tuple[Envelope, Item]]:
+        if self.position is not None and epoch <= self.position.epoch:
+            return []
+        ready = []
+        while self._waiting:
+            ready += self.give_up()
         self.position = StreamPosition(epoch=epoch, sequence=-1, ended=False)
+        return ready
 
     def _drain(self) -> list[tuple[Envelope, Item]]:
         assert self.position is not None

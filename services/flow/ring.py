@@ -1,9 +1,50 @@
 """A producer's memory of what it sent lately, to be asked for again by sequence number."""
 
 from collections import deque
+from collections.abc import Iterator
 from dataclasses import dataclass, field
+from itertools import islice
+from typing import NamedTuple
 
-from services.flow.message import Envelope
+from services.flow.message import DecodeError, Envelope
+
+
+class Place(NamedTuple):
+    """A message's place in its stream; later ones compare greater."""
+
+    epoch: int
+    sequence: int
+
+
+class RingExtent(NamedTuple):
+    """What a ring holds, both ends included."""
+
+    oldest: Place
+    newest: Place
+
+    def encode(self) -> bytes:
+        """Four words of ASCII: oldest epoch and sequence, newest epoch and sequence."""
+        return " ".join(str(number) for number in (*self.oldest, *self.newest)).encode()
+
+    @classmethod
+    def decode(cls, data: bytes) -> "RingExtent":
+        """Raises DecodeError when the bytes are no extent."""
+        try:
+            epoch, sequence, last_epoch, last_sequence = (int(word) for word in data.decode("ascii").split(" "))
+        except ValueError as error:
+            raise DecodeError(f"not the extent of a ring: {data[:64]!r}") from error
+        return cls(Place(epoch, sequence), Place(last_epoch, last_sequence))
+
+
+class Question(NamedTuple):
+    """What is missing of a stream: `first` to `last` of one epoch; without `last`, all that came after too.
+
+    `epoch` None asks for everything that is left.
+    """
+
+    epoch: int | None
+    first: int
+    last: int | None
 
 
 @dataclass
@@ -23,16 +64,22 @@ class ReplayRing:
         while len(self._sent) > 1 and (self._sent[0][0].captured_ns < oldest_kept_ns or self._bytes > self.most_bytes):
             self._bytes -= len(self._sent.popleft()[1])
 
-    def between(self, epoch: int | None, first: int, last: int | None) -> list[tuple[Envelope, bytes]]:
-        """Messages first..last (both included) of an epoch, in order; None means: any epoch, to the newest."""
-        return [
-            (envelope, payload)
-            for envelope, payload in list(self._sent)
-            if (epoch is None or envelope.epoch == epoch)
-            and envelope.sequence >= first
-            and (last is None or envelope.sequence <= last)
-        ]
+    def answer(self, question: Question, most: int | None = None) -> list[tuple[Envelope, bytes]]:
+        """The first `most` messages asked for, in order."""
+        return list(islice(self._matching(question), most))
 
-    def newest(self) -> Envelope | None:
-        """Envelope of the last message sent."""
-        return self._sent[-1][0] if self._sent else None
+    def extent(self) -> RingExtent | None:
+        """Oldest and newest message held; None when nothing was sent."""
+        if not self._sent:
+            return None
+        oldest, newest = self._sent[0][0], self._sent[-1][0]
+        return RingExtent(Place(oldest.epoch, oldest.sequence), Place(newest.epoch, newest.sequence))
+
+    def _matching(self, question: Question) -> Iterator[tuple[Envelope, bytes]]:
+        first = Place(-1 if question.epoch is None else question.epoch, question.first)
+        for envelope, payload in self._sent:
+            place = Place(envelope.epoch, envelope.sequence)
+            if question.last is not None and place > Place(first.epoch, question.last):
+                return
+            if place >= first:
+                yield envelope, payload
