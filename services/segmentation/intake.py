@@ -19,6 +19,9 @@ RHYTHM_FROM = Stream(RHYTHM, "estimation")
 MOST_ANGLE, MOST_RATE = 1e4, 200.0
 """rad and rad/s; beyond them a value is no joint coordinate (pelvis_rotation counts whole turns)."""
 
+MOST_PHASE = 1e9
+"""rad, beyond the strides of a lifetime."""
+
 LATEST_NS = 10**17
 """ns, three years; a session time beyond it is none."""
 
@@ -61,7 +64,8 @@ class Intake:
         if len(rhythm.phase) != rows or len(rhythm.locked) != rows:
             self._reject(RHYTHM_FROM, Reason.WRONG_SHAPE, rows)
             return np.full(rows, np.nan)
-        return np.where(rhythm.locked, rhythm.phase, np.nan)
+        phase = np.array(rhythm.phase, dtype=np.float64)
+        return np.where(np.array(rhythm.locked) & (np.abs(phase) < MOST_PHASE), phase, np.nan)
 
     def _reject(self, stream: Stream, reason: Reason, count: int) -> None:
         if count:

@@ -121,6 +121,8 @@ class SwingDetector:
         state.hindmost = state.trail[at][1]
         state.toe_off_ns = turning_point(state.trail, at) + int(p.toe_off_after_hindmost_s * 1e9)
         state.swinging = True
+        # What was before belongs to the last stride: its foremost point must not be taken for this one's.
+        del state.trail[:at]
         return Contact(GaitEventKind.TOE_OFF, state.toe_off_ns, p.toe_off_std_s)
 
     def _land(self, captured_ns: int) -> Contact | None:

@@ -1,0 +1,76 @@
+import json
+import random
+
+import pytest
+
+from schemas.kinematics import JointState
+from schemas.rhythm import Rhythm
+from services.segmentation.pairing import Pairing
+
+
+def joints(*captured_ns: int) -> JointState:
+    return JointState.model_construct(model="lower_body", captured_ns=list(captured_ns))
+
+
+def rhythm(*captured_ns: int) -> Rhythm:
+    return Rhythm.model_construct(captured_ns=list(captured_ns))
+
+
+def fed(pairing: Pairing, messages) -> list[tuple[list[int], bool]]:
+    pairs = []
+    for message in messages:
+        add = pairing.add_joints if isinstance(message, JointState) else pairing.add_rhythm
+        pairs += add(message)
+    pairs += pairing.flush()
+    return [(j.captured_ns, r is not None and r.captured_ns == j.captured_ns) for j, r in pairs]
+
+
+def shuffled(first: list, second: list, seed: int) -> list:
+    """Both lists in their own order, interleaved at random."""
+    rng = random.Random(seed)
+    first, second, merged = list(first), list(second), []
+    while first or second:
+        source = first if not second or (first and rng.random() < 0.5) else second
+        merged.append(source.pop(0))
+    return merged
+
+
+JOINTS = [joints(0, 1), joints(2, 3), joints(4, 5), joints(6, 7), joints(9)]
+RHYTHMS = [rhythm(0, 1), rhythm(4, 5), rhythm(6), rhythm(8), rhythm(9)]
+EXPECTED = [([0, 1], True), ([2, 3], False), ([4, 5], True), ([6, 7], False), ([9], True)]
+
+
+@pytest.mark.parametrize("seed", range(20))
+def test_interleaving_does_not_matter(seed):
+    assert fed(Pairing(), shuffled(JOINTS, RHYTHMS, seed)) == EXPECTED
+
+
+def test_one_stream_after_the_other():
+    assert fed(Pairing(), JOINTS + RHYTHMS) == EXPECTED
+    assert fed(Pairing(), RHYTHMS + JOINTS) == EXPECTED
+
+
+def test_a_stream_without_any_rhythm_is_kept_for_the_end():
+    assert fed(Pairing(), JOINTS) == [(message.captured_ns, False) for message in JOINTS]
+
+
+def test_snapshot_keeps_what_waits():
+    waiting = Pairing()
+    full = JointState(
+        model="lower_body",
+        captured_ns=[5],
+        position=[[0.1]],
+        velocity=[[0.2]],
+        acceleration=[[0.3]],
+        position_std=[[0.4]],
+        velocity_std=[[0.5]],
+        valid=[True],
+    )
+    waiting.add_joints(full)
+    resumed = Pairing()
+    resumed.restore(json.loads(json.dumps(waiting.snapshot())))
+    [(kept, partner)] = resumed.add_rhythm(
+        Rhythm(captured_ns=[5], phase=[1], frequency=[1], quality=[1], locked=[True])
+    )
+    assert kept == full
+    assert partner is not None
