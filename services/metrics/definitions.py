@@ -109,7 +109,7 @@ STRIDE_METRICS: tuple[Definition, ...] = (
     Definition("knee_flexion_at_contact", "rad", True, "Knee flexion at initial contact.", _knee_at_contact),
     Definition("knee_flexion_peak_swing", "rad", True, "Largest knee flexion after toe-off.", _knee_peak_swing),
     Definition("hip_flexion_range", "rad", True, "Largest minus smallest hip flexion.", _range("hip_flexion")),
-    Definition("hip_flexion_peak", "rad", True, "Largest hip flexion.", _largest("hip_flexion")),
+    Definition("hip_flexion_peak", "rad", True, "Largest hip flexion within the stride.", _largest("hip_flexion")),
     Definition(
         "hip_extension_peak",
         "rad",

@@ -1,3 +1,4 @@
+import itertools
 import json
 
 import numpy as np
@@ -42,7 +43,7 @@ def test_contacts_follow_the_turning_points(stride_s, swing_angle):
 def test_kinds_alternate_and_delays_are_bounded():
     found = events(SwingDetector(PARAMETERS), gait(20.0, 1.3, 1.0))
     kinds = [event.kind for _, event in found]
-    assert all(a != b for a, b in zip(kinds, kinds[1:], strict=False))
+    assert all(a != b for a, b in itertools.pairwise(kinds))
     assert all(0 <= now - event.captured_ns < 0.4e9 for now, event in found)
 
 
