@@ -1,0 +1,52 @@
+"""Real processes over loopback: a router on a free port, services as children."""
+
+from collections.abc import Callable, Iterator
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+from services.bus.router import Router, choose_endpoint, open_router
+from services.bus.settings import BusSettings
+from tests.system.stage import Processes
+
+
+@pytest.fixture(scope="module")
+def free_router() -> str:
+    """An endpoint on loopback that nobody listens on."""
+    return choose_endpoint("tcp/127.0.0.1:0")
+
+
+@pytest.fixture
+def router() -> Iterator[Router]:
+    """A router in this process, on a free port of loopback."""
+    with open_router(BusSettings(router="tcp/127.0.0.1:0", site="test")) as router:
+        yield router
+
+
+@pytest.fixture
+def settings(router: Router) -> BusSettings:
+    """Settings of a client of `router`."""
+    return BusSettings(router=router.endpoint, site="test")
+
+
+@pytest.fixture
+def closing() -> Iterator[Callable[[Any], Any]]:
+    """Registers something to be closed at the end of the test, last first."""
+    things: list[Any] = []
+
+    def register(thing: Any) -> Any:
+        things.append(thing)
+        return thing
+
+    yield register
+    for thing in reversed(things):
+        thing.close()
+
+
+@pytest.fixture
+def processes(settings: BusSettings, tmp_path: Path) -> Iterator[Processes]:
+    """Child processes with the router's address in their environment."""
+    processes = Processes(settings, tmp_path)
+    yield processes
+    processes.close()
