@@ -7,6 +7,7 @@ lower convex hull above the mean device time, which leaves the least sum of dela
 side; it stays in the offset, as a constant.
 """
 
+import itertools
 import math
 from collections import deque
 from dataclasses import dataclass, field
@@ -53,9 +54,9 @@ class _Point(NamedTuple):
 class DeviceClock:
     """Maps one device's time stamps, ns, to session time, ns. Pure: arrival times come as arguments.
 
-    The output never decreases and never lies after the arrival. A stamp that is not later than the last one is
-    refused; two in a row that agree on a new, earlier time are a clock that was set back, and begin a new fit, as
-    does a stamp that claims to come from the future.
+    The output increases by at least 1 ns and, but for those, never lies after the arrival. A stamp that is not later
+    than the last one is refused; two in a row that agree on a new, earlier time are a clock that was set back, and
+    begin a new fit, as does a stamp that claims to come from the future.
     """
 
     parameters: ClockParameters = CLOCK
@@ -132,12 +133,12 @@ class DeviceClock:
     def _fit(self) -> None:
         assert self._reference is not None, "read starts the fit before it learns"
         zero = self._reference
-        points = [(p.device_ns - zero.device_ns, p.arrival_ns - zero.arrival_ns) for p in self._blocks]
-        points = [(float(x), float(y - x)) for x, y in points]
+        passed = [(p.device_ns - zero.device_ns, p.arrival_ns - zero.arrival_ns) for p in self._blocks]
+        points = [(float(on_device), float(on_session - on_device)) for on_device, on_session in passed]
         hull = _lower_hull(points)
         middle = sum(x for x, _ in points) / len(points)
         if len(points) >= 3:
-            left, right = next((a, b) for a, b in zip(hull, hull[1:], strict=False) if a[0] <= middle <= b[0])
+            left, right = next((a, b) for a, b in itertools.pairwise(hull) if a[0] <= middle <= b[0])
             slope = (right[1] - left[1]) / (right[0] - left[0])
             self.drift = min(max(slope, -self.parameters.worst_drift), self.parameters.worst_drift)
         self._offset_ns = min(y - self.drift * x for x, y in points)

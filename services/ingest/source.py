@@ -4,8 +4,9 @@ from collections.abc import Iterator
 from pathlib import Path
 
 from schemas.archive_layout import PART_SUFFIX
-from services.flow.message import Envelope, Message, Stream
-from services.ingest.data import MANIFESTS
+from services.flow.message import Envelope, Message
+from services.ingest.batching import Batcher
+from services.ingest.data import MANIFESTS, data_folders
 from services.ingest.driver import Source, SourceMessage, streams_of
 from services.ingest.errors import SourceError, UnknownSource
 from services.ingest.identity import Identity
@@ -13,14 +14,18 @@ from services.ingest.manifest import FILE_NAME
 from services.ingest.mcap_file import McapRecording, raw_files
 from services.ingest.recording import Recording
 from services.ingest.synthetic.source import open_synthetic
-from services.ingest.tracks import joined
 
-__all__ = ["Source", "SourceError", "SourceMessage", "iter_messages", "open_source", "shipped_manifests"]
+__all__ = ["Source", "SourceError", "SourceMessage", "iter_messages", "known_recordings", "open_source"]
 
 
-def shipped_manifests() -> list[str]:
-    """Names of the recordings that the software knows; their data is looked for beside it."""
-    return sorted(path.stem for path in MANIFESTS.glob("*.toml"))
+def known_recordings() -> dict[str, Path]:
+    """Recordings that can be opened by name, with their manifests: those the software describes, and folders with a
+    recording.toml among the data."""
+    found = {path.stem: path for path in sorted(MANIFESTS.glob("*.toml"))}
+    for folder in data_folders():
+        for path in sorted(folder.glob(f"*/{FILE_NAME}")):
+            found.setdefault(path.parent.name, path)
+    return found
 
 
 def open_source(spec: str, *, session: str | None = None, estimator: str | None = None) -> Source:
@@ -34,8 +39,9 @@ def open_source(spec: str, *, session: str | None = None, estimator: str | None 
     scheme, separator, rest = spec.partition(":")
     if separator and scheme == "synthetic":
         return open_synthetic(rest, identity)
-    if spec in shipped_manifests():
-        return Recording(MANIFESTS / f"{spec}.toml", identity)
+    named = known_recordings()
+    if spec in named:
+        return Recording(named[spec], identity)
     path = Path(spec)
     if path.suffix == ".toml":
         return Recording(path, identity)
@@ -44,9 +50,9 @@ def open_source(spec: str, *, session: str | None = None, estimator: str | None 
     if path.is_dir():
         archived = [] if (path / FILE_NAME).exists() else raw_files(path)
         return McapRecording(archived, identity) if archived else Recording(path / FILE_NAME, identity)
-    known = ", ".join(shipped_manifests())
     raise UnknownSource(
-        f"{spec!r} is no folder with {FILE_NAME}, no .mcap file, no synthetic:walk and no known recording ({known})"
+        f"{spec[:200]!r} is no folder with {FILE_NAME}, no .mcap file, no synthetic:walk and no known recording "
+        f"({', '.join(named)})"
     )
 
 
@@ -64,12 +70,7 @@ def iter_messages(source: Source, ticks: int = 1) -> Iterator[Message]:
 
 def in_batches(messages: Iterator[SourceMessage], ticks: int) -> Iterator[SourceMessage]:
     """Join `ticks` consecutive messages of a stream into one; what is incomplete at the end comes last."""
-    held: dict[Stream, tuple[int, SourceMessage]] = {}
+    batcher = Batcher(ticks)
     for message in messages:
-        count, so_far = held.pop(message.stream, (0, None))
-        message = message if so_far is None else joined(so_far, message)
-        if count + 1 >= ticks:
-            yield message
-        else:
-            held[message.stream] = (count + 1, message)
-    yield from (message for _, message in held.values())
+        yield from batcher.add(message)
+    yield from batcher.flush()

@@ -77,25 +77,3 @@ def _cut(times: Sequence[Times], tick_ns: int) -> tuple[int, list[list[int]]]:
     ticks = [(captured_ns + tick_ns // 2) // tick_ns for captured_ns in times]
     present = np.unique(np.concatenate(ticks))
     return len(present), [[*np.searchsorted(tick, present).tolist(), len(tick)] for tick in ticks]
-
-
-def joined(first: SourceMessage, second: SourceMessage) -> SourceMessage:
-    """Two consecutive messages of one stream as one."""
-    match first.payload, second.payload:
-        case ImuBatch() as a, ImuBatch() as b:
-            sensors = [_joined_samples(x, y) for x, y in zip(a.sensors, b.sensors, strict=True)]
-            return second._replace(payload=ImuBatch.model_construct(sensors=sensors))
-        case ReferenceBatch() as a, ReferenceBatch() as b:
-            batch = ReferenceBatch.model_construct(
-                captured_ns=a.captured_ns + b.captured_ns, values=a.values + b.values
-            )
-            return second._replace(payload=batch)
-    raise TypeError(f"messages of {first.stream.name} cannot be joined")
-
-
-def _joined_samples(a: SensorSamples, b: SensorSamples) -> SensorSamples:
-    return SensorSamples.model_construct(
-        captured_ns=a.captured_ns + b.captured_ns,
-        angular_velocity=a.angular_velocity + b.angular_velocity,
-        specific_force=a.specific_force + b.specific_force,
-    )

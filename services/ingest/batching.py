@@ -1,0 +1,81 @@
+"""Several ticks in one message: fewer messages when there is more to do than time for it."""
+
+from dataclasses import dataclass, field
+
+from schemas.imu import ImuBatch, ReferenceBatch, SensorSamples
+from services.flow.message import Stream
+from services.ingest.driver import SourceMessage
+from services.ingest.parameters import PARAMETERS, IngestParameters
+
+
+@dataclass
+class Batcher:
+    """Joins `ticks` consecutive messages of each stream; `ticks` may change at any time."""
+
+    ticks: int = 1
+    _held: dict[Stream, tuple[int, SourceMessage]] = field(default_factory=dict)
+
+    def add(self, message: SourceMessage) -> list[SourceMessage]:
+        """The next message of its stream; what is now complete."""
+        count, so_far = self._held.pop(message.stream, (0, None))
+        message = message if so_far is None else joined(so_far, message)
+        if count + 1 >= self.ticks:
+            return [message]
+        self._held[message.stream] = (count + 1, message)
+        return []
+
+    def flush(self) -> list[SourceMessage]:
+        """What is incomplete, at the end."""
+        rest = [message for _, message in self._held.values()]
+        self._held.clear()
+        return rest
+
+
+@dataclass
+class BatchGovernor:
+    """How many ticks a message should hold, from how far a paced session lags behind its clock.
+
+    One tick while it keeps up. After a second behind it takes one more, up to the most; after a while in time one
+    less. Replays without a pace have no lag and keep one tick, so their messages are those of a plain loop.
+    """
+
+    parameters: IngestParameters = PARAMETERS
+    ticks: int = 1
+    _since_s: float | None = None
+
+    def observe(self, now_s: float, lag_s: float) -> int:
+        """`now_s` monotonic; `lag_s` how late the oldest message that is due would be sent."""
+        if self._since_s is None:
+            self._since_s = now_s
+        passed = now_s - self._since_s
+        if self.parameters.lag_in_time_s < lag_s < self.parameters.lag_behind_s:
+            self._since_s = now_s
+        elif lag_s >= self.parameters.lag_behind_s and passed >= self.parameters.grow_after_s:
+            self.ticks = min(self.ticks + 1, self.parameters.most_ticks)
+            self._since_s = now_s
+        elif lag_s <= self.parameters.lag_in_time_s and passed >= self.parameters.shrink_after_s:
+            self.ticks = max(self.ticks - 1, 1)
+            self._since_s = now_s
+        return self.ticks
+
+
+def joined(first: SourceMessage, second: SourceMessage) -> SourceMessage:
+    """Two consecutive messages of one stream as one."""
+    match first.payload, second.payload:
+        case ImuBatch() as a, ImuBatch() as b:
+            sensors = [_joined_samples(x, y) for x, y in zip(a.sensors, b.sensors, strict=True)]
+            return second._replace(payload=ImuBatch.model_construct(sensors=sensors))
+        case ReferenceBatch() as a, ReferenceBatch() as b:
+            batch = ReferenceBatch.model_construct(
+                captured_ns=a.captured_ns + b.captured_ns, values=a.values + b.values
+            )
+            return second._replace(payload=batch)
+    raise TypeError(f"messages of {first.stream.name} cannot be joined")
+
+
+def _joined_samples(a: SensorSamples, b: SensorSamples) -> SensorSamples:
+    return SensorSamples.model_construct(
+        captured_ns=a.captured_ns + b.captured_ns,
+        angular_velocity=a.angular_velocity + b.angular_velocity,
+        specific_force=a.specific_force + b.specific_force,
+    )

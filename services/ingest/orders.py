@@ -1,0 +1,52 @@
+"""Commands that ingest takes, and how it answers: the JSON that was asked for, or {"error": reason}."""
+
+import json
+from typing import Annotated, TypeVar
+
+from pydantic import BaseModel, ConfigDict, Field, ValidationError
+
+from services.ingest.errors import SourceError
+
+
+class InvalidOrder(SourceError):
+    """A command that is not understood or cannot be carried out."""
+
+
+class Order(BaseModel):
+    """A command's body. Unknown fields of a newer sender are ignored."""
+
+    model_config = ConfigDict(frozen=True, allow_inf_nan=False, extra="ignore")
+
+
+class StartOrder(Order):
+    """Play a source as a session."""
+
+    source: Annotated[str, Field(min_length=1, max_length=4096)]
+    speed: Annotated[float, Field(gt=0, le=1000)] | None = Field(description="times real time; null: as followed")
+    estimator: str | None = None
+    session: str | None = None
+    ticks: Annotated[int, Field(ge=1, le=5)] = 1
+
+
+class StopOrder(Order):
+    """End a session's streams."""
+
+    session: str
+
+
+AnyOrder = TypeVar("AnyOrder", bound=Order)
+
+
+def parse_order(model: type[AnyOrder], body: bytes) -> AnyOrder:
+    """Raises InvalidOrder, naming the field."""
+    try:
+        return model.model_validate_json(body)
+    except ValidationError as error:
+        fault = error.errors(include_url=False, include_context=False, include_input=False)[0]
+        key = ".".join(str(part) for part in fault["loc"]) or "body"
+        raise InvalidOrder(f"{key}: {fault['msg']}") from error
+
+
+def refusal(reason: object) -> bytes:
+    """The answer to a command that was not carried out."""
+    return json.dumps({"error": str(reason)}).encode()

@@ -1,0 +1,168 @@
+"""One session on the bus: its samples read on the side, numbered and sent when they are due, closed at the end."""
+
+import itertools
+import logging
+from collections import deque
+from collections.abc import Iterator
+from concurrent.futures import Future, ThreadPoolExecutor
+
+from schemas.health import Progress, SessionHealth
+from schemas.session import SessionDescription
+from schemas.signals import session_token_key
+from services.bus.connection import Bus
+from services.bus.logs import event
+from services.bus.publisher import StreamPublisher
+from services.flow.message import Stream
+from services.ingest.batching import Batcher, BatchGovernor
+from services.ingest.driver import Source, SourceMessage, streams_of
+from services.ingest.orders import StartOrder
+from services.ingest.pacing import AsFastAsFollowed, Pace, Readers, RealTime
+from services.ingest.parameters import PARAMETERS, IngestParameters
+
+ARCHIVE = "archive"
+
+logger = logging.getLogger(__name__)
+
+
+class ReadAhead:
+    """A source's messages, made in chunks by a reading thread so that no slow file holds up another session."""
+
+    def __init__(self, messages: Iterator[SourceMessage], readers: ThreadPoolExecutor, chunk: int) -> None:
+        self.exhausted = False
+        self._messages = messages
+        self._threads = readers
+        self._chunk = chunk
+        self._ready: deque[SourceMessage] = deque()
+        self._reading: Future[list[SourceMessage]] | None = None
+        self._more()
+
+    def peek(self) -> SourceMessage | None:
+        """The next message, if it is there already. Raises what the source raises."""
+        if self._reading is not None and self._reading.done():
+            chunk = self._reading.result()
+            self._reading = None
+            self.exhausted = len(chunk) < self._chunk
+            self._ready.extend(chunk)
+        if self._reading is None and not self.exhausted and len(self._ready) <= self._chunk:
+            self._more()
+        return self._ready[0] if self._ready else None
+
+    def pop(self) -> SourceMessage:
+        """Take the message that `peek` showed."""
+        return self._ready.popleft()
+
+    @property
+    def is_empty(self) -> bool:
+        """Everything was taken."""
+        return self.exhausted and not self._ready
+
+    def _more(self) -> None:
+        self._reading = self._threads.submit(lambda: list(itertools.islice(self._messages, self._chunk)))
+
+
+class Playback:
+    """A running session. All on the loop's thread. The description must be served before it is made."""
+
+    def __init__(
+        self,
+        bus: Bus,
+        source: Source,
+        description: SessionDescription,
+        order: StartOrder,
+        threads: ThreadPoolExecutor,
+        now_s: float,
+        parameters: IngestParameters = PARAMETERS,
+    ) -> None:
+        self.description = description
+        self.readers = Readers(parameters)
+        self.ended_at_s: float | None = None
+        self._source = source
+        self._parameters = parameters
+        self._ahead = ReadAhead(source.messages(), threads, parameters.chunk)
+        self._pace: Pace = (
+            AsFastAsFollowed(self.readers, now_s, parameters) if order.speed is None else RealTime(now_s, order.speed)
+        )
+        self._governor = BatchGovernor(parameters, ticks=order.ticks)
+        self._least_ticks = order.ticks
+        self._batcher = Batcher(order.ticks)
+        session = description.session
+        self._publishers = {stream: StreamPublisher(bus, session, stream) for stream in streams_of(description)}
+        self._token = bus.declare_token(session_token_key(bus.settings.site, session))
+        self._captured_ns = 0
+
+    def pump(self, now_s: float) -> None:
+        """Send what is due. A source that fails on the way ends its session, with the reason in the log."""
+        if self.ended_at_s is not None:
+            return
+        try:
+            self._send_due(now_s)
+            if self._ahead.is_empty:
+                self.end(now_s)
+        except Exception as error:
+            self.end(now_s)
+            raise RuntimeError(f"session {self.description.session}: the source failed: {error}") from error
+
+    def end(self, now_s: float) -> None:
+        """Close the streams. Rings and token stay until the archive has everything."""
+        if self.ended_at_s is not None:
+            return
+        for message in self._batcher.flush():
+            self._send(message)
+        for publisher in self._publishers.values():
+            newest = publisher.newest
+            publisher.end(0 if newest is None else newest.captured_ns)
+        self.ended_at_s = now_s
+        logger.info(event("session_ended", session=self.description.session, captured_ns=self._captured_ns))
+
+    def note_progress(self, service: str, progress: Progress, now_s: float) -> None:
+        """A reader said how far it is."""
+        self.readers.report(service, progress.positions, now_s)
+        self.readers.forget()
+
+    def is_archived(self) -> bool:
+        """The streams are closed and the archive has their ends."""
+        last = {stream.name: self._last_sequence(stream) for stream in self._publishers}
+        return self.ended_at_s is not None and self.readers.has_everything(ARCHIVE, last)
+
+    def is_over(self, now_s: float) -> bool:
+        """Nobody needs the rings any more, or nobody came for them in time."""
+        if self.ended_at_s is None:
+            return False
+        return self.is_archived() or now_s - self.ended_at_s >= self._parameters.linger_s
+
+    def health(self) -> SessionHealth:
+        """What was left out of the source."""
+        return SessionHealth(
+            session=self.description.session,
+            captured_ns=self._captured_ns,
+            inputs=[],
+            rejections=self._source.rejections(),
+        )
+
+    def close(self) -> None:
+        """Take the token back and forget the rings."""
+        self._token.close()
+        for publisher in self._publishers.values():
+            publisher.close()
+
+    def _send_due(self, now_s: float) -> None:
+        limit_ns = self._pace.limit_ns(now_s)
+        first = self._ahead.peek()
+        lag_s = max(0.0, (limit_ns - first.captured_ns) * 1e-9) if first is not None else 0.0
+        if self._pace.paced:
+            self._batcher.ticks = max(self._least_ticks, self._governor.observe(now_s, lag_s))
+        for _ in range(self._parameters.most_per_pump):
+            message = self._ahead.peek()
+            if message is None or message.captured_ns > limit_ns:
+                return
+            for batch in self._batcher.add(self._ahead.pop()):
+                self._send(batch)
+
+    def _send(self, message: SourceMessage) -> None:
+        envelope = self._publishers[message.stream].send(message.captured_ns, message.payload)
+        self.readers.sent(message.stream.name, envelope.sequence, message.captured_ns)
+        self._captured_ns = max(self._captured_ns, message.captured_ns)
+
+    def _last_sequence(self, stream: Stream) -> int:
+        newest = self._publishers[stream].newest
+        return -1 if newest is None else newest.sequence
