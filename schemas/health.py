@@ -22,6 +22,8 @@ class Reason(StrEnum):
     LATE = "late"
     MALFORMED_ROW = "malformed_row"
     QUEUE_FULL = "queue_full"
+    DISK_LOW = "disk_low"
+    NOT_RECORDED = "not_recorded"
 
 
 class Rejection(Payload):

@@ -24,12 +24,18 @@ class ArchiveParameters:
     """bytes free on the disk below which a warning is given."""
     stop_free_bytes: int = GIB
     """bytes free below which nothing is recorded any more, so that the database can still write."""
+    resume_free_bytes: int = GIB + GIB // 2
+    """bytes free above which recording goes on after it was stopped."""
     disk_check_s: float = 2.0
     """s between two looks at the free space."""
     retry_s: float = 1.0
     """s after a failed write before the recording goes on in a new file."""
     progress_s: float = 0.1
     """s between two reports of the durable position."""
+    progress_repeat_s: float = 1.0
+    """s after which the durable position is reported again although it has not changed."""
+    claim_s: float = 5.0
+    """s after the start within which a session that still runs has come back; other open recordings are closed."""
     gone_s: float = 30.0
     """s without a session's token after which its recording is closed as interrupted."""
     checkpoint_bytes: int = 16 * MIB

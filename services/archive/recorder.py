@@ -66,10 +66,10 @@ class Recorder:
         """Take over a writer; from now on only the recorder touches it, except for `durable` and `counts`."""
         self._orders.put(_Order(writer.description.session, writer=writer))
 
-    def put(self, session: str, record: Record, timeout_s: float) -> bool:
-        """Hand over a message; False when the disk was too slow for that long."""
+    def put(self, session: str, record: Record) -> bool:
+        """Hand over a message; False at once when the disk is so slow that no more may wait."""
         try:
-            self._orders.put(_Order(session, record=record), timeout=timeout_s)
+            self._orders.put_nowait(_Order(session, record=record))
         except queue.Full:
             return False
         return True

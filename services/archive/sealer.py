@@ -3,7 +3,6 @@
 import logging
 import threading
 from collections import deque
-from collections.abc import Callable
 from dataclasses import dataclass, field
 from pathlib import Path
 
@@ -35,17 +34,15 @@ class SealJob:
 class Sealer:
     """The only writer of manifests. A job that the disk refuses is tried again; its files stay as they are."""
 
-    def __init__(
-        self, software: str, disk: Disk, parameters: ArchiveParameters, on_done: Callable[[Path], None]
-    ) -> None:
+    def __init__(self, software: str, disk: Disk, parameters: ArchiveParameters) -> None:
         self.failures = 0
         self._software = software
         self._disk = disk
         self._parameters = parameters
-        self._on_done = on_done
         self._jobs: deque[SealJob] = deque()
+        self._forgotten: set[Path] = set()
         self._changed = threading.Condition()
-        self._busy = False
+        self._busy: SealJob | None = None
         self._stopping = False
         self._thread = threading.Thread(target=self._run, name="sealer", daemon=True)
         self._thread.start()
@@ -56,10 +53,18 @@ class Sealer:
             self._jobs.append(job)
             self._changed.notify_all()
 
+    def take_back(self, folder: Path) -> None:
+        """Forget what is still to be done for a folder; its open files then belong to the caller again."""
+        with self._changed:
+            self._forgotten.add(folder)
+            self._changed.wait_for(lambda: self._busy is None or self._busy.folder != folder)
+            self._jobs = deque(job for job in self._jobs if job.folder != folder)
+            self._forgotten.discard(folder)
+
     def wait(self, timeout_s: float) -> bool:
         """Whether everything submitted was done within the time."""
         with self._changed:
-            return self._changed.wait_for(lambda: not self._jobs and not self._busy, timeout_s)
+            return self._changed.wait_for(lambda: not self._jobs and self._busy is None, timeout_s)
 
     def stop(self) -> None:
         """Finish the job in hand; what is left stays as `.part` files and is done at the next start."""
@@ -80,7 +85,6 @@ class Sealer:
     def _try(self, job: SealJob) -> bool:
         try:
             do_job(job, self._software, self._disk, self._parameters.chunk_bytes)
-            self._on_done(job.folder)
         except OSError as error:
             self.failures += 1
             log.error("%s cannot be closed now: %s; it is tried again", job.folder.name, error)
@@ -95,14 +99,14 @@ class Sealer:
             self._changed.wait_for(lambda: self._jobs or self._stopping)
             if self._stopping:
                 return None
-            self._busy = True
-            return self._jobs.popleft()
+            self._busy = self._jobs.popleft()
+            return self._busy
 
     def _after(self, job: SealJob, *, done: bool) -> None:
         with self._changed:
-            if not done:
+            if not done and job.folder not in self._forgotten:
                 self._jobs.appendleft(job)
-            self._busy = False
+            self._busy = None
             self._changed.notify_all()
             if not done:
                 self._changed.wait_for(lambda: self._stopping, self._parameters.retry_s)

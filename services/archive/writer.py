@@ -80,7 +80,7 @@ class SessionWriter:
         self._begun_s = monotonic_s()
         self._journals: dict[str, Journal] = {}
         self._gaps = 0
-        self.durable = self._reached()
+        self.durable = durable_of(self._ledger)
 
     def write(self, record: Record) -> None:
         """Take a message: dropped when it is known; what it shows to be missing is written as a gap before it."""
@@ -112,7 +112,7 @@ class SessionWriter:
     def pending(self) -> "PendingSync":
         """What has been pushed and would be durable after a sync."""
         journals = [journal for journal in self._journals.values() if journal.unsynced]
-        return PendingSync(journals, self._reached())
+        return PendingSync(journals, durable_of(self._ledger))
 
     def settle(self, done: "PendingSync") -> None:
         """A sync has run without an error."""
@@ -166,10 +166,12 @@ class SessionWriter:
         self.counts.lost += envelope.sequence - first
         self._ledger.advance(gap.stream, gap.epoch, first, gap.last_sequence)
 
-    def _reached(self) -> Durable:
-        positions = self._ledger.positions()
-        return Durable(
-            positions={name: place.sequence for name, place in positions.items()},
-            captured_ns=self._ledger.captured_ns(),
-            ended=frozenset(name for name, place in positions.items() if place.ended),
-        )
+
+def durable_of(ledger: Ledger) -> Durable:
+    """What is safe when all that the ledger holds is."""
+    positions = ledger.positions()
+    return Durable(
+        positions={name: place.sequence for name, place in positions.items()},
+        captured_ns=ledger.captured_ns(),
+        ended=frozenset(name for name, place in positions.items() if place.ended),
+    )
