@@ -1,0 +1,108 @@
+"""The same filter as a textbook writes it: dense matrices, all measurements at once, rows from Pinocchio.
+
+It is what the compiled filter is compared with, in results and in time.
+
+    x = F x + G j,  P = F P F' + Q,  S = H P H' + R,  K = P H' inv(S),  x = x + K (z - h(x)),  P = (I - K H) P
+"""
+
+from collections.abc import Sequence
+
+import numpy as np
+from numpy.typing import NDArray
+
+from schemas.vocabulary import Segment
+from services.biomech.lower_body import LowerBodyModel, SensorMount
+from services.biomech.lower_body_ekf import NOMINAL_DT_S, MeasurementModel, NoiseModel
+from services.biomech.pinocchio_model import PinocchioBody
+
+Array = NDArray[np.float64]
+
+YAWED = (Segment.PELVIS, Segment.THIGH_RIGHT, Segment.THIGH_LEFT)
+
+
+class TextbookEkf:
+    """State x (3 n,) and covariance P (3 n, 3 n), positions first; every sensor has a sample in every step.
+
+    Unlike in the compiled filter, position and velocity of the pelvis are part of the covariance.
+    """
+
+    def __init__(
+        self,
+        model: LowerBodyModel,
+        mounts: Sequence[SensorMount],
+        measurement: MeasurementModel,
+        noise: NoiseModel,
+    ) -> None:
+        self.body = PinocchioBody(model, mounts)
+        self.measurement, self.noise = measurement, noise
+        self.n, self.t = len(model.dofs), model.first_rotation
+        self.soft = model.soft
+        self.x = np.zeros(3 * self.n)
+        starts = (noise.start_position_std, noise.start_velocity_std, noise.start_acceleration_std)
+        self.P = np.diag(np.repeat(np.square(starts), self.n))
+
+    def advance(self, dt_s: float, samples: Array, jerk: Array) -> None:
+        """Predict over dt_s > 0 and fuse samples (S, 6) of all sensors; jerk (n,)."""
+        self._predict(dt_s, jerk)
+        z, H, R = self._measurement(samples, dt_s)
+        S = H @ self.P @ H.T + R
+        K = self.P @ H.T @ np.linalg.inv(S)
+        self.x = self.x + K @ z
+        self.P = (np.eye(3 * self.n) - K @ H) @ self.P
+        self.P = 0.5 * (self.P + self.P.T)
+
+    def _predict(self, dt_s: float, jerk: Array) -> None:
+        one, h = np.eye(self.n), dt_s * dt_s / 2.0
+        zero = np.zeros_like(one)
+        F = np.block([[one, dt_s * one, h * one], [zero, one, dt_s * one], [zero, zero, one]])
+        g = np.array([dt_s**3 / 6.0, h, dt_s])
+        is_rotation = np.arange(self.n) >= self.t
+        Q = np.kron(np.outer(g, g) / dt_s, np.diag(is_rotation * self.noise.jerk_density))
+        walk = np.diag(~is_rotation * self.noise.translation_density * dt_s)
+        Q[2 * self.n :, 2 * self.n :] += walk
+        self.x = F @ self.x + np.kron(g, jerk)
+        self.P = F @ self.P @ F.T + Q
+
+    def _measurement(self, samples: Array, dt_s: float) -> tuple[Array, Array, Array]:
+        """Innovations, Jacobian and noise covariance of all rows."""
+        z, H, variances = [], [], []
+        x = self.x.reshape(3, self.n)
+        for s, sample in enumerate(samples):
+            expected, rows = self._sample_rows(s, x)
+            z += list(sample - expected)
+            H += list(rows.reshape(6, -1))
+            variances += [self.noise.gyro_std**2] * 3 + [self.noise.accel_std**2] * 3
+        for innovation, row in self._yaw_rows(x[0]):
+            z.append(innovation)
+            H.append(row)
+            variances.append(self.noise.yaw_std**2 * NOMINAL_DT_S / dt_s)
+        for j in self.soft:
+            z.append(-x[0, j])
+            H.append(np.eye(3 * self.n)[j])
+            variances.append(self.noise.soft_knee_std**2 * NOMINAL_DT_S / dt_s)
+        return np.array(z), np.array(H), np.diag(variances)
+
+    def _sample_rows(self, s: int, x: Array) -> tuple[Array, Array]:
+        if self.measurement.accel_sees_motion:
+            expected, rows = self.body.sample_jacobian(s, x)
+        else:
+            still = np.stack([x[0], np.zeros(self.n), np.zeros(self.n)])
+            expected, rows = self.body.sample_jacobian(s, x)
+            at_rest, rest_rows = self.body.sample_jacobian(s, still)
+            expected[3:], rows[3:] = at_rest[3:], 0.0
+            rows[3:, 0] = rest_rows[3:, 0]
+        if not self.measurement.gyro_sees_position:
+            rows[:3, 0] = 0.0
+        return expected, rows
+
+    def _yaw_rows(self, position: Array) -> list[tuple[float, Array]]:
+        headings = [self.body.yaw(segment, position) for segment in YAWED]
+        if self.measurement.yaw == "world":
+            pairs = headings
+        elif self.measurement.yaw == "relative":
+            pelvis, pelvis_row = headings[0]
+            pairs = [(yaw - pelvis, row - pelvis_row) for yaw, row in headings[1:]]
+        else:
+            pairs = []
+        wide = np.zeros(2 * self.n)
+        return [(float((np.pi - yaw) % (2 * np.pi) - np.pi), np.concatenate([row, wide])) for yaw, row in pairs]
