@@ -7,7 +7,7 @@ import numpy as np
 from services.biomech.rhythm.compiled import compiled
 from services.biomech.rhythm.correlator import candidate_stands, find_period, follow_candidate, restart_search
 from services.biomech.rhythm.detection import moves, restart_energies, restart_filters, set_walking_energy
-from services.biomech.rhythm.memory import LOCKED, SEARCHING, STANDING, Bench, Memory
+from services.biomech.rhythm.memory import LOCKED, SEARCHING, STANDING, Bench, Memory, Record
 from services.biomech.rhythm.waveform import best_alignment, project, rotate, usable_harmonics
 
 
@@ -27,13 +27,24 @@ def search(memory: Memory, bench: Bench, dt_s: float) -> None:
         return
     if correlation <= parameters.correlation_to_accept:
         return
-    if not stands or abs(loop.frequency * period_s / (2.0 * pi) - 1.0) <= parameters.slip_tolerance:
+    if not stands or follows(loop, period_s, parameters.slip_tolerance):
         loop.slip_s = 0.0
         return
     loop.slip_s += spacing_s
     if loop.slip_s > parameters.slip_periods * period_s:
         keep_template(memory)
         seed(memory, bench, period_s, dt_s)
+
+
+@compiled
+def follows(loop: Record, period_s: float, tolerance: float) -> bool:
+    """Whether the loop goes at the rate of the correlation, now or at the time the correlation speaks of.
+
+    The correlation looks back: while the speed changes it trails behind a loop that is right.
+    """
+    turns_per_frequency = period_s / (2.0 * pi)
+    now, then = loop.frequency * turns_per_frequency, loop.frequency_mean * turns_per_frequency
+    return bool(abs(now - 1.0) <= tolerance or abs(then - 1.0) <= tolerance)
 
 
 @compiled
@@ -68,6 +79,7 @@ def begin_tracking(memory: Memory, frequency: float) -> None:
     """Start the loop's averages from what the correlation says."""
     loop = memory.loop[0]
     loop.frequency = frequency
+    loop.frequency_mean = frequency
     loop.quality = loop.correlation
     loop.residual_power = 1.0 - loop.correlation
     loop.signal_power = 1.0
@@ -106,6 +118,7 @@ def stand_still(memory: Memory) -> None:
     keep_template(memory)
     memory.loop[0].stage = STANDING
     memory.loop[0].quality = 0.0
+    memory.loop[0].candidate_period_s = 0.0
 
 
 @compiled
@@ -114,6 +127,7 @@ def bridge_gap(memory: Memory, bench: Bench, gap_s: float) -> None:
     loop, parameters = memory.loop[0], bench.parameters[0]
     restart_search(memory, 0.0)
     restart_filters(memory.channels, bench.velocity)
+    loop.candidate_period_s = 0.0
     loop.grid_s = 0.0
     loop.resting_s = 0.0
     if loop.stage == LOCKED:

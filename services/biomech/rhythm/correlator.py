@@ -163,11 +163,10 @@ def candidate_stands(loop: Record, parameters: Record) -> bool:
 
 @compiled
 def restart_search(memory: Memory, credit_s: float) -> None:
-    """Forget all correlation; `credit_s` of the motion to search has already gone by."""
+    """Forget all correlation; `credit_s` of the motion to search has already gone by. The candidate starts afresh."""
     loop = memory.loop[0]
     memory.products[:] = 0.0
     memory.squares[:] = 0.0
     loop.elapsed_s = credit_s
-    loop.candidate_period_s = 0.0
     loop.candidate_s = 0.0
     loop.correlation = 0.0

@@ -24,6 +24,7 @@ def _record_type(*names: str) -> np.dtype[np.void]:
 LOOP = _record_type(
     "phase",  # rad, unwrapped
     "frequency",  # rad/s, lambda of the loop
+    "frequency_mean",  # rad/s, as old as what the correlation knows
     "stage",
     "quality",
     "residual_power",  # of the weighted, filtered error; energies are the unit

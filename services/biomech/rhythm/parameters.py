@@ -114,6 +114,9 @@ class TrustedParameters:
     """Below it the lock stands only while the correlation confirms it. [B]"""
     slip_tolerance: float = 0.05
     """Relative difference of loop and correlation that counts as a slip. [B]"""
+    slip_memory: float = 2.5
+    """Periods over which the loop's frequency is averaged to be as old as the correlation's: its memory of two lags
+    and half a lag between the factors. [B]"""
     slip_periods: float = 1.0
     """Periods a slip must last until the loop is seeded again. [B]"""
 

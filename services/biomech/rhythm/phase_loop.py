@@ -60,12 +60,15 @@ def follow_quality(loop: Record, channels: Record, dt_s: float, parameters: Reco
 
 @compiled
 def bandwidth(loop: Record, parameters: Record) -> float:
-    """Natural frequency of the loop, rad/s: narrower in noise, wider when the error has one sign."""
+    """Natural frequency of the loop, rad/s: narrower in noise, wider and not narrowed when the error has one sign.
+
+    A change of speed also raises the variance, so it must not be answered like noise.
+    """
     noise = max(loop.phase_error_variance, 1e-4)
     calm = clip((parameters.calm_variance / noise) ** 0.25, parameters.narrowest_share, 1.0)
     systematic = clip((abs(loop.phase_error_mean) - parameters.systematic_error) / 0.3, 0.0, 1.0)
     widest: float = max(parameters.bandwidth_share * loop.frequency, parameters.lowest_bandwidth)
-    return widest * calm * (1.0 + systematic)
+    return widest * (calm + (1.0 - calm) * systematic) * (1.0 + systematic)
 
 
 @compiled
@@ -81,6 +84,7 @@ def correct_phase(loop: Record, error: float, dt_s: float, parameters: Record) -
     loop.phase += parameters.damping_gain * wn * limited * dt_s
     slowest = 2.0 * pi * 0.85 * parameters.lowest_frequency_hz
     fastest = 2.0 * pi * 1.1 * parameters.highest_frequency_hz
+    loop.frequency_mean += per_period / parameters.slip_memory * (loop.frequency - loop.frequency_mean)
     loop.frequency = clip(loop.frequency + wn * wn * limited * dt_s, slowest, fastest)
 
 
