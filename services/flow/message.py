@@ -1,5 +1,6 @@
 """A message between nodes: the payload with its envelope, and the envelope's wire form."""
 
+import re
 from dataclasses import dataclass
 from typing import NamedTuple
 
@@ -23,6 +24,11 @@ class Stream(NamedTuple):
         """Inverse of `name`. Raises KeyError for a signal that the table does not have."""
         signal, _, source = name.partition("/")
         return cls(BY_NAME[signal], source)
+
+
+_COUNT = rb"(0|[1-9][0-9]{0,18})"
+_ENVELOPE = re.compile(_COUNT + b" " + _COUNT + rb" (0|-?[1-9][0-9]{0,18}) ([01]) ([0-9A-Za-z.-]{1,32})")
+"""One spelling for each envelope, so that equal envelopes are equal bytes; numbers of at most 64 bits or so."""
 
 
 class DecodeError(ValueError):
@@ -51,13 +57,11 @@ class Envelope:
     @classmethod
     def decode(cls, data: bytes) -> "Envelope":
         """Raises DecodeError when the bytes are no envelope."""
-        try:
-            epoch, sequence, captured_ns, final, version = data.decode("ascii").split(" ")
-            if final not in ("0", "1") or int(sequence) < 0:
-                raise ValueError(final)
-            return cls(int(epoch), int(sequence), int(captured_ns), final == "1", version)
-        except ValueError as error:
-            raise DecodeError(f"not an envelope: {data[:64]!r}") from error
+        words = _ENVELOPE.fullmatch(data)
+        if words is None:
+            raise DecodeError(f"not an envelope: {data[:64]!r}")
+        epoch, sequence, captured_ns, final, version = words.groups()
+        return cls(int(epoch), int(sequence), int(captured_ns), final == b"1", version.decode("ascii"))
 
 
 @dataclass(frozen=True, slots=True)
