@@ -6,6 +6,7 @@ It has no index and one small chunk per flush. When it is closed, `seal` rewrite
 import hashlib
 import json
 import zlib
+from functools import cache
 from pathlib import Path
 
 import zstandard
@@ -60,6 +61,12 @@ def session_metadata(description: SessionDescription, file_name: str, software: 
         DESCRIPTION_FIELD: text,
         DESCRIPTION_SHA256_KEY: hashlib.sha256(text.encode()).hexdigest(),
     }
+
+
+@cache
+def schema_text(model: type[Payload]) -> bytes:
+    """JSON Schema of a model."""
+    return json.dumps(model.model_json_schema(), sort_keys=True).encode()
 
 
 class Journal:
@@ -183,8 +190,8 @@ class Journal:
     def _schema(self, name: str, model: type[Payload]) -> int:
         if name not in self._schemas:
             self._schemas[name] = len(self._schemas) + 1
-            text = json.dumps(model.model_json_schema(), sort_keys=True)
-            Schema(id=self._schemas[name], name=name, encoding=SCHEMA_ENCODING, data=text.encode()).write(self._builder)
+            data = schema_text(model)
+            Schema(id=self._schemas[name], name=name, encoding=SCHEMA_ENCODING, data=data).write(self._builder)
         return self._schemas[name]
 
     def _add(self, channel: int, numbers: tuple[int, int, int], data: bytes) -> None:
