@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 
 from schemas.vocabulary import Segment
 from services.biomech.kernels.step import step
-from services.biomech.kernels.tables import Columns, Noise, Options, Sensors, Update, empty_motion
+from services.biomech.kernels.tables import Body, Columns, Motion, Noise, Options, Sensors, Update, empty_motion
 from services.biomech.lower_body import LowerBodyModel, SensorMount
 
 Array = NDArray[np.float64]
@@ -83,12 +83,12 @@ class LowerBodyEkf:
         n, S = len(model.dofs), len(mounts)
         N = 3 * (n - model.first_rotation) + model.first_rotation
         self.x = np.zeros((3, n))
-        self._padded = np.zeros((N, padded_length(N)))
-        self.P = self._padded[:, :N]
+        self.padded_covariance = np.zeros((N, padded_length(N)))
+        self.P = self.padded_covariance[:, :N]
         self.P[:] = np.diag(self._start_variance(N))
         self._rest = np.zeros((3, n))
         self._motion = empty_motion(n)
-        M = self._padded.shape[1]
+        M = self.padded_covariance.shape[1]
         self._update = Update(
             np.zeros((S, 6, M)), np.zeros((S, 6)), np.zeros((6, M)), np.zeros(6), np.zeros(6),
             np.zeros(M), np.zeros((6, M)), np.zeros((6, 6)), np.zeros(6),
@@ -110,9 +110,13 @@ class LowerBodyEkf:
             self._rest[:] = 0.0
             options = options._replace(yaw_mode=0)
         step(
-            self.x, self._padded, dt_s, jerk, samples, fresh, self.bias, self._rest,
+            self.x, self.padded_covariance, dt_s, jerk, samples, fresh, self.bias, self._rest,
             self.body, self.sensors, self.columns, options, variances, self._motion, self._update,
         )  # fmt: skip
+
+    def tables(self) -> tuple[Body, Sensors, Columns, Options, Noise, Motion, Update]:
+        """The kernels' tables and scratch, in the order in which `step` takes them."""
+        return self.body, self.sensors, self.columns, self.options, self._variances, self._motion, self._update
 
     def settle(self) -> None:
         """After a time without samples: keep the pose, forget how it moved and how sure it was."""

@@ -72,15 +72,23 @@ class PinocchioBody:
         return np.concatenate([rate, acceleration + self.data.oMf[frame].rotation.T @ up])
 
     def sample_jacobian(self, index: int, x: Array) -> tuple[Array, Array]:
-        """`sample` and its derivatives (6, 3, n) by position, velocity and acceleration.
+        """`sample` and its derivatives (6, 3, n) by position, velocity and acceleration."""
+        self.differentiate(x)
+        return self.differentiated_sample(index)
+
+    def differentiate(self, x: Array) -> None:
+        """Derivatives of all joints in state x (3, n), for `differentiated_sample`."""
+        pin.computeForwardKinematicsDerivatives(self.model, self.data, x[0], x[1], x[2])
+        pin.updateFramePlacements(self.model, self.data)
+
+    def differentiated_sample(self, index: int) -> tuple[Array, Array]:
+        """`sample_jacobian` of the state that was differentiated last.
 
         Gravity cannot be folded into the root, since a model without translations has no root joint that could
-        accelerate: its part of the derivative, -skew(R' g) d(angular), is added. The classical acceleration is the
+        accelerate: its part of the derivative, skew(R' g) d(angular), is added. The classical acceleration is the
         spatial one plus w x u, so its derivative gains W du - U dw.
         """
         model, data, frame = self.model, self.data, self.sensor_frames[index]
-        pin.computeForwardKinematicsDerivatives(model, data, x[0], x[1], x[2])
-        pin.updateFramePlacements(model, data)
         v_q, a_q, a_v, a_a = pin.getFrameAccelerationDerivatives(model, data, frame, pin.LOCAL)
         velocity = pin.getFrameVelocity(model, data, frame, pin.LOCAL)
         spatial = pin.getFrameAcceleration(model, data, frame, pin.LOCAL)

@@ -37,6 +37,7 @@ class TextbookEkf:
         self.measurement, self.noise = measurement, noise
         self.n, self.t = len(model.dofs), model.first_rotation
         self.soft = model.soft
+        self._transitions: dict[float, tuple[Array, Array, Array]] = {}
         self.x = np.zeros(3 * self.n)
         starts = (noise.start_position_std, noise.start_velocity_std, noise.start_acceleration_std)
         self.P = np.diag(np.repeat(np.square(starts), self.n))
@@ -52,6 +53,17 @@ class TextbookEkf:
         self.P = 0.5 * (self.P + self.P.T)
 
     def _predict(self, dt_s: float, jerk: Array) -> None:
+        F, g, Q = self._transition(dt_s)
+        self.x = F @ self.x + np.kron(g, jerk)
+        self.P = F @ self.P @ F.T + Q
+
+    def _transition(self, dt_s: float) -> tuple[Array, Array, Array]:
+        """F (3 n, 3 n), g (3,) and Q (3 n, 3 n), kept for the next step of the same length."""
+        if dt_s not in self._transitions:
+            self._transitions[dt_s] = self._new_transition(dt_s)
+        return self._transitions[dt_s]
+
+    def _new_transition(self, dt_s: float) -> tuple[Array, Array, Array]:
         one, h = np.eye(self.n), dt_s * dt_s / 2.0
         zero = np.zeros_like(one)
         F = np.block([[one, dt_s * one, h * one], [zero, one, dt_s * one], [zero, zero, one]])
@@ -60,15 +72,13 @@ class TextbookEkf:
         Q = np.kron(np.outer(g, g) / dt_s, np.diag(is_rotation * self.noise.jerk_density))
         walk = np.diag(~is_rotation * self.noise.translation_density * dt_s)
         Q[2 * self.n :, 2 * self.n :] += walk
-        self.x = F @ self.x + np.kron(g, jerk)
-        self.P = F @ self.P @ F.T + Q
+        return F, g, Q
 
     def _measurement(self, samples: Array, dt_s: float) -> tuple[Array, Array, Array]:
         """Innovations, Jacobian and noise covariance of all rows."""
         z, H, variances = [], [], []
         x = self.x.reshape(3, self.n)
-        for s, sample in enumerate(samples):
-            expected, rows = self._sample_rows(s, x)
+        for sample, (expected, rows) in zip(samples, self._sample_rows(x), strict=True):
             z += list(sample - expected)
             H += list(rows.reshape(6, -1))
             variances += [self.noise.gyro_std**2] * 3 + [self.noise.accel_std**2] * 3
@@ -82,18 +92,21 @@ class TextbookEkf:
             variances.append(self.noise.soft_knee_std**2 * NOMINAL_DT_S / dt_s)
         return np.array(z), np.array(H), np.diag(variances)
 
-    def _sample_rows(self, s: int, x: Array) -> tuple[Array, Array]:
-        if self.measurement.accel_sees_motion:
-            expected, rows = self.body.sample_jacobian(s, x)
-        else:
-            still = np.stack([x[0], np.zeros(self.n), np.zeros(self.n)])
-            expected, rows = self.body.sample_jacobian(s, x)
-            at_rest, rest_rows = self.body.sample_jacobian(s, still)
-            expected[3:], rows[3:] = at_rest[3:], 0.0
-            rows[3:, 0] = rest_rows[3:, 0]
+    def _sample_rows(self, x: Array) -> list[tuple[Array, Array]]:
+        """Expected sample (6,) and rows (6, 3, n) of each sensor."""
+        sensors = range(len(self.body.sensor_frames))
+        self.body.differentiate(x)
+        result = [self.body.differentiated_sample(s) for s in sensors]
+        if not self.measurement.accel_sees_motion:
+            self.body.differentiate(np.stack([x[0], np.zeros(self.n), np.zeros(self.n)]))
+            for s, (expected, rows) in enumerate(result):
+                at_rest, rest_rows = self.body.differentiated_sample(s)
+                expected[3:], rows[3:] = at_rest[3:], 0.0
+                rows[3:, 0] = rest_rows[3:, 0]
         if not self.measurement.gyro_sees_position:
-            rows[:3, 0] = 0.0
-        return expected, rows
+            for _, rows in result:
+                rows[:3, 0] = 0.0
+        return result
 
     def _yaw_rows(self, position: Array) -> list[tuple[float, Array]]:
         headings = [self.body.yaw(segment, position) for segment in YAWED]

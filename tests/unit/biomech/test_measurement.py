@@ -51,7 +51,7 @@ def predict(ekf: LowerBodyEkf, x: Array) -> tuple[Array, Array]:
     S, n, t = len(ekf.sensors.joint), x.shape[1], ekf.body.translations
     z, H = np.zeros((S, 6)), np.zeros((S, 6, 3, n))
     for s in range(S):
-        row = np.zeros((6, ekf._padded.shape[1]))
+        row = np.zeros((6, ekf.padded_covariance.shape[1]))
         predicted_sample(s, ekf.body, ekf.sensors, ekf.options, ekf._motion, z[s], row)
         for order in range(3):
             for j in range(n):
@@ -145,7 +145,7 @@ def test_yaw_row_equals_pinocchio_and_differences(segment: Segment) -> None:
 
         def yaw(x: Array) -> tuple[float, Array]:
             orient(x, ekf.body, ekf._motion)
-            row = np.zeros(ekf._padded.shape[1])
+            row = np.zeros(ekf.padded_covariance.shape[1])
             return yaw_row(joint, ekf.body, ekf._motion, 1.0, row), row[:15]
 
         value, row = yaw(x)

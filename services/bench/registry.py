@@ -1,0 +1,30 @@
+"""Scoreboards by the name that `ambula bench` takes."""
+
+from collections.abc import Callable
+from pathlib import Path
+
+from services.bench.scoreboard import Scoreboard
+
+
+def accuracy(json_path: Path | None = None, *subject: str) -> Scoreboard:
+    """Joint angles against optical motion capture, all estimators side by side."""
+    from services.bench.accuracy import run
+
+    return run(json_path, *subject)
+
+
+def step(json_path: Path | None = None) -> Scoreboard:
+    """Time of one filter step, compiled against textbook."""
+    from services.bench.step import run
+
+    return run(json_path)
+
+
+def rhythm(json_path: Path | None = None) -> Scoreboard:
+    """Rhythm estimators on random and on walking motions."""
+    from services.bench.rhythm import run
+
+    return run(json_path)
+
+
+SCOREBOARDS: dict[str, Callable[..., Scoreboard]] = {"accuracy": accuracy, "rhythm": rhythm, "step": step}
