@@ -1,5 +1,6 @@
 """Response headers, and the bounds on what a client may send. Plain ASGI, so sockets and files are covered too."""
 
+import contextlib
 from http import HTTPStatus
 
 from starlette.datastructures import Headers, MutableHeaders
@@ -35,6 +36,28 @@ class BodyTooLarge(Exception):
     """More bytes came than a request may have."""
 
 
+class _Counter:
+    """Counts what is received. Past the bound nothing of the application's own answer goes out."""
+
+    def __init__(self, receive: Receive, send: Send, most_bytes: int) -> None:
+        self._receive = receive
+        self._send = send
+        self._left = most_bytes
+        self.exceeded = False
+
+    async def receive(self) -> Message:
+        message = await self._receive()
+        self._left -= len(message.get("body", b""))
+        if self._left < 0:
+            self.exceeded = True
+            raise BodyTooLarge
+        return message
+
+    async def send(self, message: Message) -> None:
+        if not self.exceeded:
+            await self._send(message)
+
+
 class BodyLimit:
     """Refuses request bodies past a bound, announced or not."""
 
@@ -51,19 +74,10 @@ class BodyLimit:
         if not announced.isdigit() or int(announced) > self.most_bytes:
             await self._refuse(scope, receive, send)
             return
-        taken = 0
-
-        async def receive_counted() -> Message:
-            nonlocal taken
-            message = await receive()
-            taken += len(message.get("body", b""))
-            if taken > self.most_bytes:
-                raise BodyTooLarge
-            return message
-
-        try:
-            await self.app(scope, receive_counted, send)
-        except BodyTooLarge:
+        counter = _Counter(receive, send, self.most_bytes)
+        with contextlib.suppress(BodyTooLarge):
+            await self.app(scope, counter.receive, counter.send)
+        if counter.exceeded:
             await self._refuse(scope, receive, send)
 
     async def _refuse(self, scope: Scope, receive: Receive, send: Send) -> None:

@@ -1,8 +1,8 @@
 """The live connections: one session, or the list of all that run."""
 
-import asyncio
 import contextlib
 
+import anyio
 from fastapi import APIRouter, WebSocket, WebSocketDisconnect
 
 from services.gateway.context import Context
@@ -40,25 +40,34 @@ async def _serve(socket: WebSocket, watching: contextlib.AbstractContextManager[
         code, reason = NOT_LIVE, "this session does not run now"
     except TooManyViewers:
         code, reason = TRY_AGAIN, "too many viewers"
-    with contextlib.suppress(RuntimeError, WebSocketDisconnect, TimeoutError):
-        await asyncio.wait_for(socket.close(code, reason), stall_s)
+    with contextlib.suppress(RuntimeError, WebSocketDisconnect, TimeoutError), anyio.fail_after(stall_s):
+        await socket.close(code, reason)
 
 
 async def _until_either_ends(socket: WebSocket, viewer: Viewer, stall_s: float) -> tuple[int, str]:
-    sending = asyncio.create_task(_send_all(socket, viewer, stall_s))
-    listening = asyncio.create_task(_listen(socket))
-    done, pending = await asyncio.wait({sending, listening}, return_when=asyncio.FIRST_COMPLETED)
-    for task in pending:
-        task.cancel()
-    await asyncio.gather(*pending, return_exceptions=True)
-    return sending.result() if sending in done else (NORMAL, "")
+    ending = NORMAL, ""
+
+    async def send() -> None:
+        nonlocal ending
+        ending = await _send_all(socket, viewer, stall_s)
+        group.cancel_scope.cancel()
+
+    async def listen() -> None:
+        await _listen(socket)
+        group.cancel_scope.cancel()
+
+    async with anyio.create_task_group() as group:
+        group.start_soon(send)
+        group.start_soon(listen)
+    return ending
 
 
 async def _send_all(socket: WebSocket, viewer: Viewer, stall_s: float) -> tuple[int, str]:
     try:
         while True:
             text = await viewer.take()
-            await asyncio.wait_for(socket.send_text(text), stall_s)
+            with anyio.fail_after(stall_s):
+                await socket.send_text(text)
     except Ended as end:
         return end.code, end.reason
     except TimeoutError:

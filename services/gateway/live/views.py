@@ -18,7 +18,7 @@ def encode(view: View) -> str:
 
 def seconds(ns: int) -> float:
     """Session time for a browser, which has no 64-bit integers; 0.1 ms is kept."""
-    return round(ns * 1e-9, 4)
+    return round(ns / 1e9, 4)
 
 
 def session_view(description: SessionDescription, patient: str | None) -> View:
@@ -32,7 +32,7 @@ def session_view(description: SessionDescription, patient: str | None) -> View:
         "origin": description.origin,
         "protocol": description.protocol,
         "estimator": description.estimator,
-        "started_unix_s": round(description.started_unix_ns * 1e-9, 3),
+        "started_unix_s": round(description.started_unix_ns / 1e9, 3),
         "duration_s": description.duration_s,
         "sensors": [
             {"name": sensor.name, "segment": sensor.segment.value, "rate_hz": sensor.rate_hz}

@@ -54,7 +54,7 @@ def record_start(database: Session, description: SessionDescription) -> SessionR
     row.protocol = description.protocol[:100]
     row.estimator = description.estimator[:64]
     row.origin = description.origin
-    row.started = datetime.fromtimestamp(description.started_unix_ns * 1e-9, UTC)
+    row.started = datetime.fromtimestamp(description.started_unix_ns / 1e9, UTC)
     if row.state != SessionState.FINISHED:
         row.state, row.reason, row.ended = SessionState.LIVE, None, None
         row.duration_s = description.duration_s
@@ -76,7 +76,7 @@ def record_metrics(database: Session, session: str, metrics: SessionMetrics) -> 
         database.merge(stored)
     if metrics.final:
         row.state, row.reason = SessionState.FINISHED, None
-        row.duration_s = metrics.captured_ns * 1e-9
+        row.duration_s = metrics.captured_ns / 1e9
         row.ended = (row.started or row.created) + timedelta(seconds=row.duration_s)
     return True
 

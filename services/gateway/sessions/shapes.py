@@ -28,7 +28,7 @@ def session_out(row: SessionRow) -> SessionOut:
 def metrics_out(session: str, metrics: SessionMetrics) -> MetricsOut:
     """All numbers of a session for the API."""
     numbers = [MetricOut.model_validate(metric.model_dump()) for metric in metrics.metrics]
-    return MetricsOut(session=session, final=metrics.final, at_s=metrics.captured_ns * 1e-9, metrics=numbers)
+    return MetricsOut(session=session, final=metrics.final, at_s=metrics.captured_ns / 1e9, metrics=numbers)
 
 
 def curves_out(session: str, metrics: SessionMetrics) -> CurvesOut:

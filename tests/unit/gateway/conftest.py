@@ -2,6 +2,7 @@
 
 import math
 from dataclasses import dataclass, field
+from types import SimpleNamespace
 
 import pytest
 from fastapi.testclient import TestClient
@@ -60,7 +61,9 @@ def leg_angles(at_s: float, side: Side, stride_s: float = 1.1) -> tuple[float, f
 
 
 def pose_at(at_s: float, lost: str | None = None, phase: str = "estimating", message: str = "") -> LivePose:
-    segments = [SegmentPose(segment=Segment.PELVIS, position=[0, 0, 0], quat_world_from_segment=[1, 0, 0, 0], valid=True)]
+    segments = [
+        SegmentPose(segment=Segment.PELVIS, position=[0, 0, 0], quat_world_from_segment=[1, 0, 0, 0], valid=True)
+    ]
     angles, stds = {}, {}
     for side, z in ((Side.LEFT, -HIPS_M / 2), (Side.RIGHT, HIPS_M / 2)):
         hip, knee = leg_angles(at_s, side)
@@ -69,9 +72,7 @@ def pose_at(at_s: float, lost: str | None = None, phase: str = "estimating", mes
             quat = [math.cos(angle / 2), 0.0, 0.0, math.sin(angle / 2)]
             segment = Segment(f"{name}_{side}")
             valid = lost != f"imu_{segment}"
-            segments.append(
-                SegmentPose(segment=segment, position=position, quat_world_from_segment=quat, valid=valid)
-            )
+            segments.append(SegmentPose(segment=segment, position=position, quat_world_from_segment=quat, valid=valid))
         if lost != f"imu_shank_{side}":
             angles[f"knee_flexion_{side}"], stds[f"knee_flexion_{side}"] = knee, 0.03
         angles[f"hip_flexion_{side}"], stds[f"hip_flexion_{side}"] = hip, 0.03
@@ -131,7 +132,9 @@ def metrics_at(at_s: float, final: bool) -> SessionMetrics:
         MeanCurve(
             degree_of_freedom=f"{joint}_{side}",
             strides=12,
-            mean=[leg_angles(1.1 * percent / 100, Side.LEFT)[joint == "knee_flexion"] for percent in range(CURVE_POINTS)],
+            mean=[
+                leg_angles(1.1 * percent / 100, Side.LEFT)[joint == "knee_flexion"] for percent in range(CURVE_POINTS)
+            ],
             spread=[0.05] * CURVE_POINTS,
         )
         for joint in ("hip_flexion", "knee_flexion")
@@ -166,6 +169,13 @@ class FakeControl:
     def _fail(self) -> None:
         if self.trouble is not None:
             raise self.trouble
+
+
+@pytest.fixture
+def made() -> SimpleNamespace:
+    """Makers of descriptions and messages of one made-up walk."""
+    makers = (describe, pose_at, contact_at, stride_at, metrics_at)
+    return SimpleNamespace(**{maker.__name__: maker for maker in makers})
 
 
 @pytest.fixture

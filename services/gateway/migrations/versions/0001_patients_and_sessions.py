@@ -30,7 +30,7 @@ def upgrade() -> None:
         sa.Column("created", TIME, nullable=False),
         sa.Column("started", TIME, nullable=True),
         sa.Column("ended", TIME, nullable=True),
-        sa.Column("duration_s", sa.Float, nullable=True),
+        sa.Column("duration_s", sa.Double, nullable=True),
         sa.Column("estimator", sa.String(64), nullable=False),
         sa.Column("origin", sa.String(16), nullable=False),
         sa.Column("source", sa.String(300), nullable=True),

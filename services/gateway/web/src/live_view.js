@@ -234,7 +234,7 @@ function chartPanel({ joint, title, range }) {
       this.rolling.add(pose);
       for (const side of ["left", "right"]) {
         const value = degrees(pose.angles[`${joint}_${side}`]);
-        say(now[side], `${side === "left" ? "L" : "R"} ${number(value, 0)}°`);
+        say(now[side], `${side === "left" ? "L" : "R"} ${number(value, 0)}${value === null ? "" : "°"}`);
       }
     },
   };

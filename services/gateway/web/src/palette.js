@@ -9,7 +9,7 @@ export const INK = "#1C2B33";
 export const SOFT_INK = "#51626C";
 export const GRID = "#E6EBED";
 export const PELVIS = "#44606E";
-export const GHOST = "#CBD4D8";
+export const GHOST = "#DDE4E7";
 
 /** `#rrggbb` with an alpha for bands. */
 export const faint = (colour, alpha) =>

@@ -42,22 +42,22 @@ const BONES = [
       colour: SIDE_COLOUR[side],
     },
     { from: `ankle_${side}`, to: `toe_${side}`, radii: [0.026, 0.02], bone: null, colour: GHOST },
-    { from: "pelvis_top", to: `hip_${side}`, radii: [0.05, 0.05], bone: "pelvis", colour: PELVIS },
+    { from: "pelvis_top", to: `hip_${side}`, radii: [0.048, 0.048], bone: "pelvis", colour: PELVIS },
   ]),
-  { from: "hip_left", to: "hip_right", radii: [0.05, 0.05], bone: "pelvis", colour: PELVIS },
+  { from: "hip_left", to: "hip_right", radii: [0.048, 0.048], bone: "pelvis", colour: PELVIS },
   { from: "neck", to: "pelvis_top", radii: [0.085, 0.06], bone: null, colour: GHOST },
 ];
 const JOINTS = [
   ...SIDES.flatMap((side) => [
-    { at: `hip_${side}`, radius: 0.06, bone: `thigh_${side}`, colour: SIDE_COLOUR[side] },
-    { at: `knee_${side}`, radius: 0.05, bone: `shank_${side}`, colour: SIDE_COLOUR[side] },
-    { at: `ankle_${side}`, radius: 0.034, bone: `shank_${side}`, colour: SIDE_COLOUR[side] },
+    { at: `hip_${side}`, radius: 0.058, bone: `thigh_${side}`, colour: SIDE_COLOUR[side] },
+    { at: `knee_${side}`, radius: 0.0445, bone: `shank_${side}`, colour: SIDE_COLOUR[side] },
+    { at: `ankle_${side}`, radius: 0.027, bone: `shank_${side}`, colour: SIDE_COLOUR[side] },
     { at: `toe_${side}`, radius: 0.02, bone: null, colour: GHOST },
   ]),
-  { at: "pelvis_top", radius: 0.052, bone: "pelvis", colour: PELVIS },
+  { at: "pelvis_top", radius: 0.049, bone: "pelvis", colour: PELVIS },
   { at: "neck", radius: 0.085, bone: null, colour: GHOST },
 ];
-const HEAD = { above_neck_m: 0.19, radius: 0.1 };
+const HEAD = { above_neck_m: 0.2, radius: 0.095 };
 
 const DIRECTIONS = { side: [0, 0.07, 1], front: [1, 0.07, 0], back: [-1, 0.07, 0] };
 const LOOK_AT = new Vector3(0, 0.84, 0);
@@ -106,7 +106,7 @@ export class Skeleton3d {
   buildBody() {
     this.bones = BONES.map((bone) => ({
       ...bone,
-      mesh: this.solid(new CylinderGeometry(bone.radii[0], bone.radii[1], 1, 24, 1, true), bone),
+      mesh: this.solid(new CylinderGeometry(bone.radii[1], bone.radii[0], 1, 24, 1, true), bone),
     }));
     this.joints = JOINTS.map((joint) => ({
       ...joint,
@@ -123,7 +123,6 @@ export class Skeleton3d {
 
   solid(geometry, { bone, colour }) {
     const material = new MeshStandardMaterial({ color: colour, roughness: 0.6 });
-    if (bone === null) Object.assign(material, { transparent: true, opacity: 0.45 });
     const mesh = new Mesh(geometry, material);
     this.body.add(mesh);
     return mesh;
