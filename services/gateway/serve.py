@@ -1,9 +1,11 @@
 """One gateway process, from settings to exit."""
 
 import logging
+from functools import partial
 
 import uvicorn
 
+from services.bus.lifetime import call_on_stop
 from services.bus.logs import event, set_up_logging
 from services.bus.settings import BusSettings
 from services.gateway.app import create_app
@@ -27,18 +29,21 @@ def serve() -> int:
         return 1
     feed = BusFeed(BusSettings(), link, live, app.state.gateway.keeper)
     feed.start()
+    config = uvicorn.Config(
+        app,
+        host=settings.http_host,
+        port=settings.http_port,
+        server_header=False,
+        access_log=False,
+        log_config=None,
+        ws_max_size=live.parameters.most_socket_bytes,
+        timeout_graceful_shutdown=2,
+    )
+    server = uvicorn.Server(config)
+    call_on_stop(partial(setattr, server, "should_exit", True))
     logger.info(event("serving", url=settings.url))
     try:
-        uvicorn.run(
-            app,
-            host=settings.http_host,
-            port=settings.http_port,
-            server_header=False,
-            access_log=False,
-            log_config=None,
-            ws_max_size=live.parameters.most_socket_bytes,
-            timeout_graceful_shutdown=2,
-        )
+        server.run()
     finally:
         feed.stop()
     return 0

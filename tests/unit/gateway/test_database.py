@@ -51,9 +51,13 @@ def test_commits_survive_a_power_cut_and_readers_do_not_wait(database):
 
 
 def test_a_transaction_that_fails_leaves_nothing(database):
-    with pytest.raises(RuntimeError), database.transaction() as session:
-        add_patient(session, None)
-        raise RuntimeError
+    def fail():
+        with database.transaction() as session:
+            add_patient(session, None)
+            raise RuntimeError
+
+    with pytest.raises(RuntimeError):
+        fail()
     with database.transaction() as session:
         assert session.query(PatientRow).count() == 0
 
