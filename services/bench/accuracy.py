@@ -1,0 +1,167 @@
+"""Joint angles of a recorded walk against optical motion capture, through the same nodes as live."""
+
+from collections.abc import Callable
+from pathlib import Path
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from schemas.kinematics import JointState
+from schemas.session import SessionDescription
+from schemas.signals import JOINT_STATE
+from schemas.vocabulary import ESTIMATORS, LOWER_BODY, Side
+from services.bench.neura_truth import NeuraTruth, collect_truth
+from services.bench.scoreboard import Row, Scoreboard, at_most, informative
+from services.bench.vqf_hinge import is_installed, vqf_hinge_angles
+from services.biomech.lower_body_ekf import MeasurementModel, NoiseModel
+from services.estimation.node import EstimationNode, build
+from services.estimation.parameters import EstimationParameters, FilterParameters
+from services.flow.chain import Chain
+from services.flow.host import HostedNode
+from services.flow.node import Node
+from services.ingest.source import iter_messages, open_source
+
+Array = NDArray[np.float64]
+
+NOTE = """Means of both sides. Each side's shift between sensor and camera clocks is one constant in -3..+3 samples.
+Baseline: VQF per sensor with headings tied at the joints. The truths themselves differ by 1.9 (right knee) and 4.2
+(left knee) deg rms; one person and two or three strides each way: differences below 0.2 deg mean nothing."""
+
+RECORDINGS = {"neura": "neura_s02_walk", "neura_midshank": "neura_s02_walk_midshank"}
+SHIFTS = range(-3, 4)
+"""Samples that one constant shift between the clocks of sensors and cameras may have; the measured lag is 1-3."""
+FIXED_SHIFT = 0
+STRAIGHT = np.r_[1119:1454, 1651:2073]
+"""Frames of the two straight passes."""
+WITH_TURN = np.r_[1119:2073]
+"""Frames of the whole walk, the 180 degree turn included."""
+WINDOWS = {"straight": STRAIGHT, "with turn": WITH_TURN}
+FLOORS = {
+    ("knee PiG", "straight"): 3.5, ("knee PiG", "with turn"): 3.8,
+    ("hip", "straight"): 2.8, ("hip", "with turn"): 3.1,
+}  # fmt: skip
+"""deg, offset removed, mean of both sides."""
+LITERAL = FilterParameters(
+    measurement=MeasurementModel(gyro_sees_position=True, accel_sees_motion=True, yaw="world"),
+    noise=NoiseModel(yaw_std=0.1),
+    soft_knees=False,
+)
+"""The measurement model as published: full Jacobian, dynamic accelerometer, hinge knees, yaw against the world."""
+
+
+class Score(NamedTuple):
+    """Agreement of one angle with one truth."""
+
+    offset_removed_deg: float
+    absolute_deg: float
+    correlation: float
+    shift: int
+
+
+def score(estimate: Array, truth: Array, frames: NDArray[np.int64], shift: int) -> Score:
+    """Compare estimate sample i + shift with truth sample i, both (n,) in degrees."""
+    error = estimate[frames + shift] - truth[frames]
+    return Score(
+        float(np.std(error)),
+        float(np.sqrt(np.mean(error**2))),
+        float(np.corrcoef(estimate[frames + shift], truth[frames])[0, 1]),
+        shift,
+    )
+
+
+def best_score(estimate: Array, truth: Array, frames: NDArray[np.int64]) -> Score:
+    """`score` at the constant shift that agrees best."""
+    return min((score(estimate, truth, frames, shift) for shift in SHIFTS), key=lambda s: s.offset_removed_deg)
+
+
+def estimate_angles(spec: str, estimator: str, build_node: Callable[[SessionDescription], Node] = build) -> Array:
+    """Joint angles (frames, 15) in degrees through ingest and node, NaN where there is none."""
+    source = open_source(spec, session="accuracy", estimator=estimator)
+    description = source.describe()
+    chain = Chain([HostedNode("estimation", description.session, build_node(description))])
+    rows: list[tuple[int, list[float]]] = []
+    for message in iter_messages(source):
+        for produced in chain.push(message):
+            if produced.stream.signal is JOINT_STATE and isinstance(produced.payload, JointState):
+                rows += zip(produced.payload.captured_ns, produced.payload.position, strict=True)
+    return _on_frames(rows)
+
+
+def _on_frames(rows: list[tuple[int, list[float]]]) -> Array:
+    frames = [round(captured_ns / 1e7) for captured_ns, _ in rows]
+    angles = np.full((max(frames, default=0) + 1, len(LOWER_BODY)), np.nan)
+    angles[frames] = np.degrees([position for _, position in rows])
+    return angles
+
+
+Figures = dict[tuple[str, str], dict[Side, Score]]
+"""(truth, window) -> score of each side at its best shift."""
+
+
+def figures(angles: Array, truth: NeuraTruth, *, fixed_shift: int | None = None) -> Figures:
+    """Scores of angles (frames, 15) against all truths in all windows."""
+    result: Figures = {}
+    for window, frames in WINDOWS.items():
+        for label, (joint, truths) in truth.by_label().items():
+            sides = {side: angles[:, _column(f"{joint}_flexion_{side}")] for side in Side}
+            result[label, window] = {
+                side: best_score(estimate, truths[side], frames)
+                if fixed_shift is None
+                else score(estimate, truths[side], frames, fixed_shift)
+                for side, estimate in sides.items()
+            }
+    return result
+
+
+def mean_of(scores: dict[Side, Score]) -> float:
+    """Offset-removed error, mean of both sides, deg."""
+    return float(np.mean([s.offset_removed_deg for s in scores.values()]))
+
+
+def estimator_rows(name: str, angles: Array, truth: NeuraTruth, baseline: Figures) -> list[Row]:
+    """All figures of one estimator; `baseline` may be empty."""
+    rows: list[Row] = []
+    fixed = figures(angles, truth, fixed_shift=FIXED_SHIFT)
+    for key, scores in figures(angles, truth).items():
+        title, floor = f"{name}, {key[0]}, {key[1]}", FLOORS.get(key)
+        beside = mean_of(baseline[key]) if baseline else None
+        mean = f"{title}: offset-removed"
+        if floor is None:
+            rows.append(informative(mean, mean_of(scores), "deg", beside))
+        else:
+            rows.append(at_most(mean, mean_of(scores), "deg", floor, beside))
+        absolute = float(np.mean([s.absolute_deg for s in scores.values()]))
+        rows.append(informative(f"{title}: offset-removed, shift {FIXED_SHIFT}", mean_of(fixed[key]), "deg"))
+        rows.append(informative(f"{title}: absolute", absolute, "deg"))
+        for side, s in scores.items():
+            rows.append(informative(f"{title}, {side}: offset-removed", s.offset_removed_deg, "deg"))
+            rows.append(informative(f"{title}, {side}: r", s.correlation, ""))
+            rows.append(informative(f"{title}, {side}: shift", s.shift, "samples"))
+    return rows
+
+
+def _column(name: str) -> int:
+    return next(i for i, dof in enumerate(LOWER_BODY) if dof.name == name)
+
+
+def run(json_path: Path | None = None, subject: str = "neura") -> Scoreboard:
+    """Score all estimators. Raises ValueError for a subject that is not known."""
+    if subject not in RECORDINGS:
+        raise ValueError(f"accuracy is measured on {', '.join(RECORDINGS)}, not on {subject!r}")
+    spec = RECORDINGS[subject]
+    truth = collect_truth(spec)
+    baseline = figures(vqf_hinge_angles(spec), truth) if is_installed() else {}
+    rows: list[Row] = []
+    for estimator in ESTIMATORS:
+        rows += estimator_rows(estimator, estimate_angles(spec, estimator), truth, baseline)
+    for key, scores in figures(estimate_angles(spec, "ekf", _literal_node), truth).items():
+        rows.append(informative(f"published measurement model, {key[0]}, {key[1]}", mean_of(scores), "deg"))
+    board = Scoreboard(f"accuracy on {spec}", rows, NOTE)
+    if json_path is not None:
+        board.write_json(json_path)
+    return board
+
+
+def _literal_node(description: SessionDescription) -> Node:
+    return EstimationNode(description, EstimationParameters(filter=LITERAL))
