@@ -18,6 +18,7 @@ RHYTHM_FROM = Stream(RHYTHM, "estimation")
 
 MOST_ANGLE, MOST_RATE = 1e4, 200.0
 """rad and rad/s; beyond them a value is no joint coordinate (pelvis_rotation counts whole turns)."""
+_LIMITS = np.array([MOST_ANGLE, MOST_RATE, MOST_ANGLE])[:, None, None]
 
 MOST_PHASE = 1e9
 """rad, beyond the strides of a lifetime."""
@@ -36,9 +37,8 @@ class Intake:
     def take(self, joints: JointState, rhythm: Rhythm | None) -> tuple[Batch, Array] | None:
         """The usable samples of a message and their velocities (n, 15) in rad/s; None when there are none."""
         rows = len(joints.captured_ns)
-        tables = [_table(values, rows) for values in (joints.position, joints.velocity, joints.position_std)]
-        position, velocity, std = tables
-        if position is None or velocity is None or std is None or not _names_every_dof(joints):
+        tables = _tables(joints)
+        if tables is None:
             self._reject(JOINTS_FROM, Reason.WRONG_SHAPE, rows)
             return None
         if max(map(abs, joints.captured_ns)) > LATEST_NS:
@@ -47,16 +47,16 @@ class Intake:
         captured_ns = np.array(joints.captured_ns, dtype=np.int64)
         newest = np.maximum.accumulate(np.concatenate([[self._newest_ns], captured_ns]))
         later = captured_ns > newest[:-1]
-        sane = (np.abs(position) < MOST_ANGLE) & (np.abs(velocity) < MOST_RATE) & (np.abs(std) < MOST_ANGLE)
-        use = later & sane.all(axis=1)
-        self._reject(JOINTS_FROM, Reason.CLOCK_BACKWARDS, int(np.sum(~later)))
-        self._reject(JOINTS_FROM, Reason.OUT_OF_RANGE, int(np.sum(later & ~use)))
+        use = later & (np.abs(tables) < _LIMITS).all(axis=(0, 2))
+        if not use.all():
+            self._reject(JOINTS_FROM, Reason.CLOCK_BACKWARDS, int(np.sum(~later)))
+            self._reject(JOINTS_FROM, Reason.OUT_OF_RANGE, int(np.sum(later & ~use)))
         if not use.any():
             return None
         self._newest_ns = int(captured_ns[use][-1])
-        phase = self._phase(rhythm, rows)
-        batch = Batch(captured_ns[use], position[use], phase[use], std[use].mean(axis=0), np.array(joints.valid))
-        return batch, velocity[use]
+        position, velocity, std = tables[:, use]
+        phase = self._phase(rhythm, rows)[use]
+        return Batch(captured_ns[use], position, phase, std.mean(axis=0), np.array(joints.valid)), velocity
 
     def _phase(self, rhythm: Rhythm | None, rows: int) -> Array:
         if rhythm is None:
@@ -90,12 +90,12 @@ class Intake:
         self._rejected = {(subject, Reason(reason)): count for subject, reason, count in state["rejected"]}
 
 
-def _names_every_dof(joints: JointState) -> bool:
-    return joints.model == "lower_body" and len(joints.valid) == DOFS
-
-
-def _table(rows: list[list[float]], count: int) -> Array | None:
-    """Rows as an array (count, DOFS); None when they have another shape."""
-    if len(rows) != count or any(len(row) != DOFS for row in rows):
+def _tables(joints: JointState) -> Array | None:
+    """Position, velocity and deviation (3, n, 15); None when the message has another shape."""
+    if joints.model != "lower_body" or len(joints.valid) != DOFS:
         return None
-    return np.array(rows, dtype=np.float64)
+    try:
+        tables = np.array([joints.position, joints.velocity, joints.position_std], dtype=np.float64)
+    except ValueError:
+        return None
+    return tables if tables.shape == (3, len(joints.captured_ns), DOFS) else None

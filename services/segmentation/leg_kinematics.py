@@ -4,8 +4,10 @@ Frames are ISB: x forward, y up, z right. The heading frame has the pelvis centr
 pelvis_rotation, but neither with tilt nor with obliquity.
 """
 
-from typing import NamedTuple
+from collections.abc import Callable
+from typing import Any, NamedTuple, TypeVar
 
+import numba
 import numpy as np
 from numpy.typing import NDArray
 
@@ -18,15 +20,23 @@ SIDES = (Side.LEFT, Side.RIGHT)
 """Order of the legs in every array here."""
 
 INDEX = {dof.name: i for i, dof in enumerate(LOWER_BODY)}
-_AXIS = [next(k for k in range(3) if dof.axis[k]) for dof in LOWER_BODY]
-_SIGN = np.array([sum(dof.axis) for dof in LOWER_BODY], dtype=np.float64)
-_HIP = ("hip_flexion", "hip_adduction", "hip_internal_rotation")
-_KNEE = ("knee_flexion", "knee_adduction", "knee_internal_rotation")
-# One column per leg; the joints of the two legs turn about the same coordinate axes, only the signs differ.
-_HIP_COLUMNS = np.array([[INDEX[f"{name}_{side}"] for side in SIDES] for name in _HIP])
-_KNEE_COLUMNS = np.array([[INDEX[f"{name}_{side}"] for side in SIDES] for name in _KNEE])
-_LEVEL_COLUMNS = np.array([[INDEX[name]] * 2 for name in ("pelvis_tilt", "pelvis_obliquity")])
-_HEADING_COLUMN = INDEX["pelvis_rotation"]
+_AXES = np.array([next(k for k in range(3) if dof.axis[k]) for dof in LOWER_BODY])
+_SIGNS = np.array([sum(dof.axis) for dof in LOWER_BODY], dtype=np.float64)
+_WAY_UP = (
+    "knee_internal_rotation", "knee_adduction", "knee_flexion",
+    "hip_internal_rotation", "hip_adduction", "hip_flexion",
+    "pelvis_obliquity", "pelvis_tilt", "pelvis_rotation",
+)  # fmt: skip
+# For each leg its joints from the shank up to the heading.
+_JOINTS = np.array([[INDEX.get(name, INDEX.get(f"{name}_{side}", -1)) for name in _WAY_UP] for side in SIDES])
+_TABLES = (_JOINTS, _AXES, _SIGNS)
+_ABOVE_KNEE, _ABOVE_HIP, _HEADING = 3, 6, 8
+
+Function = TypeVar("Function", bound=Callable[..., Any])
+
+
+def _compiled(function: Function) -> Function:
+    return numba.njit(cache=True)(function)  # type: ignore[no-any-return]
 
 
 class LegMotion(NamedTuple):
@@ -37,14 +47,6 @@ class LegMotion(NamedTuple):
     knee: Array  # (3, n, 2) m, knee centre in the heading frame
 
 
-def _turn(vectors: Array, axis: int, cosine: Array, sine: Array) -> None:
-    """Rotate vectors (3, n, 2, m) in place about a coordinate axis."""
-    i, j = (axis + 1) % 3, (axis + 2) % 3
-    first = cosine * vectors[i] - sine * vectors[j]
-    vectors[j] = sine * vectors[i] + cosine * vectors[j]
-    vectors[i] = first
-
-
 def leg_motion(position: Array, velocity: Array, body: Anthropometry) -> LegMotion:
     """Forward kinematics of both legs.
 
@@ -53,27 +55,49 @@ def leg_motion(position: Array, velocity: Array, body: Anthropometry) -> LegMoti
     u . e_k dq_k, where e_k is the joint's axis, the same before and after the joint's own rotation, and u is
     written in that joint's frame on the way up.
     """
-    signed = position * _SIGN
-    cosine, sine, rate = np.cos(signed), np.sin(signed), velocity * _SIGN
-    vectors = np.zeros((3, len(position), 2, 3))  # last index: shank axis u, ankle, knee
-    axis_u, ankle, knee = vectors[..., 0], vectors[..., 1], vectors[..., 2]
-    axis_u[2] = 1.0
-    shank_rate = np.zeros((len(position), 2))
+    n = len(position)
+    motion = LegMotion(np.zeros((n, 2)), np.zeros((3, n, 2)), np.zeros((3, n, 2)))
+    lengths = (body.thigh_length_m, body.shank_length_m, 0.5 * body.hip_width_m)
+    _climb(np.ascontiguousarray(position), np.ascontiguousarray(velocity), *_TABLES, *lengths, *motion)
+    return motion
 
-    def climb(columns: NDArray[np.int64]) -> None:
-        for pair in columns[::-1]:
-            axis = _AXIS[pair[0]]
-            shank_rate[:] += rate[:, pair] * axis_u[axis]
-            _turn(vectors, axis, cosine[:, pair, None], sine[:, pair, None])
 
-    ankle[1] -= body.shank_length_m
-    climb(_KNEE_COLUMNS)
-    ankle[1] -= body.thigh_length_m
-    knee[1] -= body.thigh_length_m
-    climb(_HIP_COLUMNS)
-    half_width = np.array([-0.5, 0.5]) * body.hip_width_m
-    ankle[2] += half_width
-    knee[2] += half_width
-    climb(_LEVEL_COLUMNS)
-    shank_rate += rate[:, [_HEADING_COLUMN]] * axis_u[_AXIS[_HEADING_COLUMN]]
-    return LegMotion(shank_rate, ankle, knee)
+@_compiled
+def _climb(
+    position: Array,
+    velocity: Array,
+    joints: NDArray[np.int64],
+    axes: NDArray[np.int64],
+    signs: Array,
+    thigh: float,
+    shank: float,
+    half_width: float,
+    shank_rate: Array,
+    ankles: Array,
+    knees: Array,
+) -> None:
+    """Fills shank_rate, ankles and knees; see `leg_motion`."""
+    vectors = np.zeros((3, 3))  # rows: shank axis u, ankle, knee
+    for n in range(len(position)):
+        for leg in range(2):
+            vectors[:] = 0.0
+            vectors[0, 2] = 1.0
+            vectors[1, 1] = -shank
+            for level in range(_HEADING + 1):
+                if level == _ABOVE_KNEE:
+                    vectors[1:, 1] -= thigh
+                elif level == _ABOVE_HIP:
+                    vectors[1:, 2] += half_width if leg == 1 else -half_width
+                joint = joints[leg, level]
+                axis, sign = axes[joint], signs[joint]
+                shank_rate[n, leg] += sign * velocity[n, joint] * vectors[0, axis]
+                if level == _HEADING:
+                    break
+                i, j = (axis + 1) % 3, (axis + 2) % 3
+                c, s = np.cos(sign * position[n, joint]), np.sin(sign * position[n, joint])
+                for row in range(3):
+                    first, second = vectors[row, i], vectors[row, j]
+                    vectors[row, i] = c * first - s * second
+                    vectors[row, j] = s * first + c * second
+            ankles[:, n, leg] = vectors[1]
+            knees[:, n, leg] = vectors[2]
