@@ -5,13 +5,14 @@ It has no index and one small chunk per flush. When it is closed, `seal` rewrite
 
 import hashlib
 import json
+import struct
 import zlib
 from functools import cache
 from pathlib import Path
 
 import zstandard
 from mcap.data_stream import RecordBuilder
-from mcap.records import Channel, Chunk, Header, Message, Metadata, Schema
+from mcap.records import Channel, Chunk, Header, Metadata, Schema
 
 from schemas.archive_layout import (
     DESCRIPTION_FIELD,
@@ -37,11 +38,14 @@ from schemas.payload import SCHEMA_VERSION, Payload
 from schemas.session import SessionDescription
 from schemas.signals import GAP, SESSION, Signal
 from services.archive.disk import Disk
-from services.archive.frames import MAGIC
+from services.archive.frames import MAGIC, Opcode
 from services.archive.parameters import MIB
 from services.archive.record import Record
 from services.flow.message import Envelope
 
+_MESSAGE = struct.Struct("<BQHIQQ")
+_FIXED = 2 + 4 + 8 + 8
+"""A message record: kind and length, then `_FIXED` bytes of channel, sequence and the two times, then the payload."""
 LOG_TIME_LIMIT = 1 << 64
 SEQUENCE_LIMIT = 1 << 32
 """MCAP holds times in 64 and sequence numbers in 32 unsigned bits."""
@@ -82,6 +86,7 @@ class Journal:
         self._schemas: dict[str, int] = {}
         self._channels: dict[tuple[str, int, str], int] = {}
         self._builder = RecordBuilder()
+        self._compressor = zstandard.ZstdCompressor()
         self._from_ns, self._to_ns, self._messages = LOG_TIME_LIMIT, 0, 0
         self._size = 0
         self._unsynced = False
@@ -196,9 +201,8 @@ class Journal:
 
     def _add(self, channel: int, numbers: tuple[int, int, int], data: bytes) -> None:
         sequence, log_time, received = numbers
-        Message(channel_id=channel, sequence=sequence, log_time=log_time, publish_time=received, data=data).write(
-            self._builder
-        )
+        self._builder.write(_MESSAGE.pack(Opcode.MESSAGE, _FIXED + len(data), channel, sequence, log_time, received))
+        self._builder.write(data)
         self._from_ns, self._to_ns = min(self._from_ns, log_time), max(self._to_ns, log_time)
         self._messages += 1
         if self._builder.count > self._chunk_bytes:
@@ -209,7 +213,7 @@ class Journal:
         chunk = RecordBuilder()
         Chunk(
             compression="zstd",
-            data=zstandard.compress(data),
+            data=self._compressor.compress(data),
             message_start_time=self._from_ns,
             message_end_time=self._to_ns,
             uncompressed_crc=zlib.crc32(data),

@@ -39,6 +39,8 @@ JOINTS = Stream(JOINT_STATE, "estimation")
 LOSS_TARGET_S = 0.15
 WAIT_S = 30.0
 FLUSHES = 100
+FLUSH_TICKS = 10
+"""Ticks between two flushes."""
 PATIENTS = 100
 
 
@@ -80,15 +82,15 @@ def _kill_rows(kills: int) -> Iterator[Row]:
 
 
 def _flush_rows() -> Iterator[Row]:
-    """One patient, then a floor of them: a flush each 100 ms of 5 IMUs and 12 joint coordinates at 100 Hz."""
+    """One patient tick by tick, then a floor of them at five ticks a message: 100 ms of two streams at 100 Hz."""
     with tempfile.TemporaryDirectory() as name:
-        pushes, syncs, size = _time_flushes(Path(name), 1)
+        pushes, syncs, size = _time_flushes(Path(name), 1, ticks=1, flushes=FLUSHES)
     yield informative("push of 100 ms, one patient, median", statistics.median(pushes) * 1e3, "ms")
     yield informative("sync after it, median", statistics.median(syncs) * 1e3, "ms")
     yield informative("sync after it, worst", max(syncs) * 1e3, "ms")
     yield informative("file size per message, while open", size, "bytes")
     with tempfile.TemporaryDirectory() as name:
-        pushes, syncs, _ = _time_flushes(Path(name), PATIENTS, 10)
+        pushes, syncs, _ = _time_flushes(Path(name), PATIENTS, ticks=5, flushes=10)
     yield informative(f"begin the files of {PATIENTS} patients", pushes[0] * 1e3, "ms")
     yield at_most(f"push of 100 ms, {PATIENTS} patients, worst", max(pushes[1:]) * 1e3, "ms", 100.0)
     yield Row(
@@ -96,20 +98,21 @@ def _flush_rows() -> Iterator[Row]:
     )
 
 
-def _time_flushes(folder: Path, patients: int, flushes: int = FLUSHES) -> tuple[list[float], list[float], float]:
+def _time_flushes(folder: Path, patients: int, ticks: int, flushes: int) -> tuple[list[float], list[float], float]:
     """Seconds to write and push, seconds to sync, each for all patients together; bytes per message."""
     writers = []
     for number in range(patients):
         (folder / f"p{number}").mkdir()
         writers.append(SessionWriter(folder / f"p{number}", describe(f"p{number}"), "bench"))
     pushes, syncs = [], []
-    payloads = [sample(number) for number in range(50)]
+    payloads = [b"".join(sample(number + tick) for tick in range(ticks)) for number in range(50)]
+    each = FLUSH_TICKS // ticks
     for place in range(flushes):
         begun = time.perf_counter()
         for writer in writers:
-            for number in range(place * 10, place * 10 + 10):
+            for number in range(place * each, place * each + each):
+                envelope = Envelope(0, number, int(number * ticks * 1e9 / RATE_HZ))
                 for stream in (HUB, JOINTS):
-                    envelope = Envelope(0, number, int(number * 1e9 / RATE_HZ))
                     writer.write(Record(stream, envelope, payloads[number % 50], 0))
             writer.push()
         pushed = time.perf_counter()
@@ -118,7 +121,7 @@ def _time_flushes(folder: Path, patients: int, flushes: int = FLUSHES) -> tuple[
         pushes.append(pushed - begun)
         syncs.append(time.perf_counter() - pushed)
     size = sum(part.stat().st_size for writer in writers for part in writer.close())
-    return pushes, syncs, size / (patients * flushes * 20)
+    return pushes, syncs, size / (patients * flushes * each * 2)
 
 
 class _Hub:

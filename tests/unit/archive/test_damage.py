@@ -43,19 +43,27 @@ def read(path):
     return seen, None
 
 
+def places(path):
+    """Every byte; of the index at the end, which only other readers use, every eighth."""
+    size = path.stat().st_size
+    with path.open("rb") as file:
+        index = max(frame.offset + len(frame.body) for frame in read_frames(file))
+    return sorted({*range(index), *range(index, size, 8), *range(size - 60, size)})
+
+
 @pytest.mark.parametrize("name", [CLOSED, OPEN])
 def test_cut_anywhere(small, name):
     path, records = small(name)
     data = path.read_bytes()
     lengths = []
-    for size in range(len(data)):
+    for size in places(path):
         path.write_bytes(data[:size])
         seen, error = read(path)
         assert seen == records[: len(seen)]
         assert error is not None or path.name == OPEN
         lengths.append(len(seen))
     assert lengths == sorted(lengths)
-    assert lengths[len(data) // 2] + lengths[-1] > 0
+    assert lengths[-1] == len(records) - (name == OPEN)
 
 
 @pytest.mark.parametrize(("name", "mask"), [(CLOSED, 0x01), (OPEN, 0x04), (OPEN, 0xFF)])
@@ -63,7 +71,7 @@ def test_flip_any_byte(small, name, mask):
     path, records = small(name)
     data = bytearray(path.read_bytes())
     silent = []
-    for place in range(len(data)):
+    for place in places(path):
         data[place] ^= mask
         path.write_bytes(data)
         data[place] ^= mask
