@@ -40,6 +40,7 @@ def base_config() -> zenoh.Config:
     settings: dict[str, Any] = {
         "scouting/multicast/enabled": False,
         "scouting/gossip/enabled": False,
+        "scouting/delay": 0,
         "transport/link/tx/lease": LEASE_MS,
         "transport/shared_memory/enabled": False,
     }
@@ -78,6 +79,7 @@ class Bus:
         """What lives as long as the connection: the ring servers of the signals this process sends."""
         self._session = session
         self._closed = False
+        self._declared: set[Handle] = set()
 
     @classmethod
     def open(cls, settings: BusSettings, service: str, timeout_s: float = 2.0) -> Self:
@@ -118,7 +120,7 @@ class Bus:
     def subscribe(self, key: str, callback: Callable[[Received], None]) -> Handle:
         """Plain subscription, best effort, for live and state signals. One thread each: use wildcards."""
         subscriber = self._session.declare_subscriber(key, self._guarded(callback, _received))
-        return Handle(subscriber.undeclare)
+        return self._keep(subscriber.undeclare)
 
     def subscribe_recovering(self, key: str, callback: Callable[[Received], None]) -> Handle:
         """Subscription that asks publishers' caches for short gaps; order and completeness are the caller's."""
@@ -128,7 +130,7 @@ class Bus:
             self._guarded(callback, _received),
             recovery=ext.RecoveryConfig(periodic_queries=None, heartbeat=True),
         )
-        return Handle(subscriber.undeclare)
+        return self._keep(subscriber.undeclare)
 
     def publish_cached(self, key: str) -> tuple[Callable[[bytes, bytes], None], Handle]:
         """A publisher with a cache for `subscribe_recovering`: put(payload, attachment), and its grip."""
@@ -143,7 +145,7 @@ class Bus:
         def put(payload: bytes, attachment: bytes) -> None:
             publisher.put(payload, attachment=attachment)
 
-        return put, Handle(publisher.undeclare)
+        return put, self._keep(publisher.undeclare)
 
     def put(self, key: str, payload: bytes, attachment: bytes = b"") -> None:
         """Send once, dropped rather than waited for when the way is full."""
@@ -164,7 +166,7 @@ class Bus:
                     query.reply_err(f"{type(error).__name__}: {error}")
 
         queryable = self._session.declare_queryable(key, answer)
-        return Handle(queryable.undeclare)
+        return self._keep(queryable.undeclare)
 
     def ask(
         self, key: str, parameters: Mapping[str, str] | None = None, body: bytes = b"", timeout_s: float = 2.0
@@ -198,7 +200,7 @@ class Bus:
 
     def declare_token(self, key: str) -> Handle:
         """Be visible under `key` for as long as this process is connected."""
-        return Handle(self._session.liveliness().declare_token(key).undeclare)
+        return self._keep(self._session.liveliness().declare_token(key).undeclare)
 
     def watch_tokens(self, key: str, callback: Callable[[str, bool], None]) -> Handle:
         """callback(key, alive) for every token that is there, comes or goes."""
@@ -207,7 +209,7 @@ class Bus:
             callback(str(sample.key_expr), sample.kind == zenoh.SampleKind.PUT)
 
         subscriber = self._session.liveliness().declare_subscriber(key, self._guarded(change), history=True)
-        return Handle(subscriber.undeclare)
+        return self._keep(subscriber.undeclare)
 
     def close(self) -> None:
         """Leave. Never waits longer than a second: Zenoh's own close may hang on a dead link."""
@@ -217,6 +219,17 @@ class Bus:
         closing = threading.Thread(target=self._close_session, name="bus-close", daemon=True)
         closing.start()
         closing.join(1.0)
+
+    def _keep(self, undeclare: Callable[[], None]) -> Handle:
+        """Zenoh takes back what nobody holds: the bus holds it until the handle is closed."""
+
+        def take_back() -> None:
+            self._declared.discard(handle)
+            undeclare()
+
+        handle = Handle(take_back)
+        self._declared.add(handle)
+        return handle
 
     def _close_session(self) -> None:
         try:

@@ -52,13 +52,13 @@ def test_a_consumer_that_was_killed_gets_everything_the_next_time(
 ):
     first, second = tmp_path / "first", tmp_path / "second"
     victim = processes.start(CONSUMER, "s", str(first))
-    processes.start(PRODUCER, "s", "1500", "500")
+    processes.start(PRODUCER, "s", "1000", "500")
     wait_until(lambda: len(lines(first)) > 200)
     victim.kill()
     processes.start(CONSUMER, "s", str(second))
-    wait_until(lambda: len(lines(second)) == 1501, 15.0)
-    assert numbers(second) == list(range(1501))
-    assert [line[1] for line in lines(second)] == [*range(1500), -1]
+    wait_until(lambda: len(lines(second)) == 1001, 15.0)
+    assert numbers(second) == list(range(1001))
+    assert [line[1] for line in lines(second)] == [*range(1000), -1]
     assert numbers(first) == list(range(len(lines(first))))
 
 
@@ -67,14 +67,14 @@ def test_a_freeze_beyond_the_lease_loses_nothing(processes: Processes, tmp_path:
     out = tmp_path / "out"
     children = {
         "consumer": processes.start(CONSUMER, "s", str(out)),
-        "producer": processes.start(PRODUCER, "s", "2000", "400"),
+        "producer": processes.start(PRODUCER, "s", "1000", "300"),
     }
-    wait_until(lambda: len(lines(out)) > 200)
+    wait_until(lambda: len(lines(out)) > 100)
     children[frozen].send_signal(signal.SIGSTOP)
-    time.sleep(3.0)
+    time.sleep(2.5)
     children[frozen].send_signal(signal.SIGCONT)
-    wait_until(lambda: len(lines(out)) == 2001, 15.0)
-    assert numbers(out) == list(range(2001))
+    wait_until(lambda: len(lines(out)) == 1001, 15.0)
+    assert numbers(out) == list(range(1001))
 
 
 def test_a_late_subscriber_gets_all_that_the_ring_has(settings: BusSettings, closing: Closing):
