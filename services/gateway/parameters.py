@@ -10,6 +10,9 @@ class GatewayParameters:
     pose_interval_s: float = 0.05
     """s between two skeletons on a screen: 20 Hz, enough for the eye and cheap to encode once per session."""
 
+    trail: int = 32
+    """Number of skeletons kept per session, so that curves miss none between two that are shown."""
+
     floor_interval_s: float = 0.5
     """s between two lists of the running sessions; a lost sensor must show within 1 s."""
 

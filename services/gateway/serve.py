@@ -21,6 +21,8 @@ logger = logging.getLogger(__name__)
 def serve() -> int:
     """Serve until SIGTERM or Ctrl-C. Exit code."""
     set_up_logging("gateway")
+    for talkative in ("alembic", "uvicorn"):
+        logging.getLogger(talkative).setLevel(logging.WARNING)
     settings, live, link = GatewaySettings(), LiveHub(), BusLink()
     try:
         app = create_app(settings, live, BusControl(link))

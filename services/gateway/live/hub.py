@@ -3,7 +3,9 @@
 import asyncio
 import contextlib
 import logging
+import math
 import time
+from collections import deque
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass, field
 
@@ -26,9 +28,9 @@ class TooManyViewers(RuntimeError):
     """The bound on open live connections is reached."""
 
 
-@dataclass(slots=True)
-class LatestPose:
-    """The newest skeleton of a session as it came, and when."""
+@dataclass(slots=True, eq=False)
+class ArrivedPose:
+    """A skeleton as it came, and when."""
 
     payload: bytes
     received_s: float
@@ -58,7 +60,7 @@ class LiveHub:
         self.undecodable = 0
         self._loop: asyncio.AbstractEventLoop | None = None
         self._sessions: dict[str, LiveSession] = {}
-        self._poses: dict[str, LatestPose] = {}
+        self._poses: dict[str, deque[ArrivedPose]] = {}
         self._floor_viewers: set[Viewer] = set()
         self._floor_task: asyncio.Task[None] | None = None
 
@@ -66,8 +68,9 @@ class LiveHub:
 
     def pose(self, session: str, payload: bytes) -> None:
         """The newest skeleton of a session. Decoded only when somebody looks."""
-        if session in self._sessions:
-            self._poses[session] = LatestPose(payload, self.clock())
+        arrived = self._poses.get(session)
+        if arrived is not None:
+            arrived.append(ArrivedPose(payload, self.clock()))
 
     def open(self, description: SessionDescription) -> None:
         """A session runs. Known ones are left as they are."""
@@ -84,6 +87,12 @@ class LiveHub:
     def close(self, session: str, state: str) -> None:
         """A session is over: viewers are told its state, then let go."""
         self._on_loop(lambda: self._close(session, state))
+
+    def reached_s(self, session: str) -> float:
+        """Session time of the newest skeleton, s; 0 when there is none. From any thread."""
+        newest = self._newest(session)
+        pose = None if newest is None else self._decode(session, newest)
+        return 0.0 if pose is None else views.seconds(pose.captured_ns)
 
     # Asked by routes, on the event loop.
 
@@ -158,6 +167,7 @@ class LiveHub:
 
     def _open(self, description: SessionDescription) -> None:
         self._sessions.setdefault(description.session, LiveSession(description))
+        self._poses.setdefault(description.session, deque(maxlen=self.parameters.trail))
 
     def _assign(self, session: str, patient: str | None) -> None:
         live = self._sessions.get(session)
@@ -184,17 +194,18 @@ class LiveHub:
         self._tell(session, {"kind": "ended", "state": state})
         for viewer in live.viewers:
             viewer.end(NORMAL, "the session has ended")
-        del self._sessions[session]
-        self._poses.pop(session, None)
+        if live.task is not None:
+            live.task.cancel()
+            live.task = None
+        del self._sessions[session], self._poses[session]
 
     async def _show_poses(self, session: str, live: LiveSession) -> None:
-        shown: LatestPose | None = None
-        beat_s = 0.0
+        shown_s = beat_s = -math.inf
         while True:
-            latest = self._poses.get(session)
-            if latest is not None and latest is not shown:
-                shown = latest
-                self._show(live.viewers, "pose", self._pose_view(session, latest))
+            fresh = [each for each in self._poses[session].copy() if each.received_s > shown_s]
+            if fresh:
+                shown_s = fresh[-1].received_s
+                self._show(live.viewers, "pose", self._pose_view(session, fresh))
             if self.clock() - beat_s >= self.parameters.heartbeat_s:
                 beat_s = self.clock()
                 self._show(live.viewers, "status", self._status_view(session))
@@ -211,21 +222,25 @@ class LiveHub:
             for viewer in viewers:
                 viewer.show(slot, text)
 
-    def _decode(self, session: str, latest: LatestPose) -> LivePose | None:
+    def _decode(self, session: str, arrived: ArrivedPose) -> LivePose | None:
         try:
-            return LivePose.model_validate_json(latest.payload)
+            return LivePose.model_validate_json(arrived.payload)
         except ValueError:
             self.undecodable += 1
             log.warning("event=undecodable_pose session=%s count=%d", session, self.undecodable)
             return None
 
-    def _pose_view(self, session: str, latest: LatestPose) -> View | None:
-        pose = self._decode(session, latest)
-        return None if pose is None else views.pose_view(pose, self.clock() - latest.received_s)
+    def _pose_view(self, session: str, fresh: list[ArrivedPose]) -> View | None:
+        poses = [pose for each in fresh if (pose := self._decode(session, each)) is not None]
+        return views.pose_view(poses, self.clock() - fresh[-1].received_s) if poses else None
+
+    def _newest(self, session: str) -> ArrivedPose | None:
+        arrived = self._poses.get(session)
+        return arrived[-1] if arrived else None
 
     def _age_s(self, session: str) -> float | None:
-        latest = self._poses.get(session)
-        return None if latest is None else round(self.clock() - latest.received_s, 2)
+        newest = self._newest(session)
+        return None if newest is None else round(self.clock() - newest.received_s, 2)
 
     def _status_view(self, session: str) -> View:
         return {"kind": "status", "age_s": self._age_s(session), **self.health.brief()}
@@ -235,8 +250,8 @@ class LiveHub:
         return {"kind": "floor", "sessions": cards, **self.health.brief()}
 
     def _card_view(self, session: str, live: LiveSession) -> View:
-        latest = self._poses.get(session)
-        pose = None if latest is None else self._decode(session, latest)
+        newest = self._newest(session)
+        pose = None if newest is None else self._decode(session, newest)
         head = views.session_view(live.description, live.patient)
         return {
             **{name: head[name] for name in ("id", "title", "patient", "estimator", "started_unix_s", "duration_s")},

@@ -47,8 +47,12 @@ def session_view(description: SessionDescription, patient: str | None) -> View:
     }
 
 
-def pose_view(pose: LivePose, age_s: float) -> View:
-    """One skeleton. `age_s`: how long the gateway has had it."""
+def pose_view(poses: list[LivePose], age_s: float) -> View:
+    """The newest skeleton, with the angles of those that came since the last one shown, so that no peak is cut.
+
+    `age_s`: how long the gateway has had the newest.
+    """
+    pose = poses[-1]
     return {
         "kind": "pose",
         "at_s": seconds(pose.captured_ns),
@@ -63,10 +67,17 @@ def pose_view(pose: LivePose, age_s: float) -> View:
             }
             for each in pose.segments
         },
-        "angles": {name: round(value, 5) for name, value in pose.angles.items()},
-        "angles_std": {name: round(value, 5) for name, value in pose.angles_std.items()},
+        **_angles_view(pose),
+        "trail": [{"at_s": seconds(each.captured_ns), **_angles_view(each)} for each in poses[:-1]],
         "sensors": sensor_views(pose),
         "cadence_per_min": pose.cadence_per_min,
+    }
+
+
+def _angles_view(pose: LivePose) -> View:
+    return {
+        "angles": {name: round(value, 5) for name, value in pose.angles.items()},
+        "angles_std": {name: round(value, 5) for name, value in pose.angles_std.items()},
     }
 
 

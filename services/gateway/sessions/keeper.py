@@ -45,12 +45,13 @@ class SessionKeeper:
         self.running.add(description.session)
         self._gone_since.pop(description.session, None)
         self.live.open(description)
-        self._write((description.session, "start"), lambda: self._record_start(description))
+        self._write((description.session, "start"), partial(self._record_start, description))
 
     def measured(self, session: str, metrics: SessionMetrics) -> None:
         """Metrics came; final ones are the end of the session."""
         self.live.tell(session, views.metrics_view(metrics))
-        self._write((session, "metrics"), lambda: self._record_metrics(session, metrics))
+        reached_s = self.live.reached_s(session) if metrics.final else 0.0
+        self._write((session, "metrics"), partial(self._record_metrics, session, metrics, reached_s))
         if metrics.final:
             self._gone_since.pop(session, None)
             self.live.close(session, SessionState.FINISHED)
@@ -81,9 +82,9 @@ class SessionKeeper:
             patient = row.patient_code
         self.live.assign(description.session, patient)
 
-    def _record_metrics(self, session: str, metrics: SessionMetrics) -> None:
+    def _record_metrics(self, session: str, metrics: SessionMetrics, reached_s: float) -> None:
         with self.database.transaction() as database:
-            records.record_metrics(database, session, metrics)
+            records.record_metrics(database, session, metrics, reached_s)
 
     def _record_end(self, session: str) -> None:
         with self.database.transaction() as database:

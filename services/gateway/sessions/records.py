@@ -61,8 +61,11 @@ def record_start(database: Session, description: SessionDescription) -> SessionR
     return row
 
 
-def record_metrics(database: Session, session: str, metrics: SessionMetrics) -> bool:
-    """Keep a session's newest metrics; final ones finish it. False when the session is not known."""
+def record_metrics(database: Session, session: str, metrics: SessionMetrics, reached_s: float) -> bool:
+    """Keep a session's newest metrics; final ones finish it. False when the session is not known.
+
+    `reached_s`: session time that was seen; metrics end with the last stride, the session may have gone on.
+    """
     row = database.get(SessionRow, session)
     if row is None:
         return False
@@ -76,7 +79,7 @@ def record_metrics(database: Session, session: str, metrics: SessionMetrics) -> 
         database.merge(stored)
     if metrics.final:
         row.state, row.reason = SessionState.FINISHED, None
-        row.duration_s = metrics.captured_ns / 1e9
+        row.duration_s = max(reached_s, metrics.captured_ns / 1e9)
         row.ended = (row.started or row.created) + timedelta(seconds=row.duration_s)
     return True
 

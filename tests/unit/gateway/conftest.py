@@ -132,9 +132,7 @@ def metrics_at(at_s: float, final: bool) -> SessionMetrics:
         MeanCurve(
             degree_of_freedom=f"{joint}_{side}",
             strides=12,
-            mean=[
-                leg_angles(1.1 * percent / 100, side)[joint == "knee_flexion"] for percent in range(CURVE_POINTS)
-            ],
+            mean=[leg_angles(1.1 * percent / 100, side)[joint == "knee_flexion"] for percent in range(CURVE_POINTS)],
             spread=[0.05] * CURVE_POINTS,
         )
         for joint in ("hip_flexion", "knee_flexion")

@@ -40,6 +40,17 @@ def test_a_viewer_gets_the_session_then_skeletons_in_si_units(client, gateway, h
         assert set(shown["segments"]) == {"pelvis", "thigh_left", "shank_left", "thigh_right", "shank_right"}
 
 
+def test_skeletons_between_two_shown_ones_leave_their_angles(client, gateway, hub, made):
+    gateway.keeper.appeared(made.describe("a"))
+    times = [1.0, 1.01, 1.02]
+    for at_s in times:
+        hub.pose("a", payload(made.pose_at(at_s)))
+    with client.websocket_connect("/v1/live/a") as socket:
+        shown = read_until(socket, "pose")
+    assert [each["at_s"] for each in shown["trail"]] + [shown["at_s"]] == times
+    assert shown["trail"][0]["angles"]["hip_flexion_left"] != shown["angles"]["hip_flexion_left"]
+
+
 def test_no_nanoseconds_reach_a_browser(client, gateway, hub, made):
     gateway.keeper.appeared(made.describe("a"))
     with client.websocket_connect("/v1/live/a") as socket:

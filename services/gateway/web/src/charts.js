@@ -89,11 +89,20 @@ export class RollingChart {
     );
   }
 
-  add(pose) {
-    if (this.at.length > 0 && pose.at_s <= this.at[this.at.length - 1]) {
-      if (this.at[this.at.length - 1] - pose.at_s > SPAN_S) this.clear();
-      else return;
+  /** Poses in the order of their times; older ones than the last are left out, a jump back starts anew. */
+  add(poses) {
+    for (const pose of poses) {
+      const last = this.at[this.at.length - 1];
+      if (pose.at_s < last - SPAN_S) this.clear();
+      else if (pose.at_s <= last) continue;
+      this.append(pose);
     }
+    const now = this.at[this.at.length - 1];
+    this.forget(now - SPAN_S - 0.2);
+    this.draw(now);
+  }
+
+  append(pose) {
     this.at.push(pose.at_s);
     SIDES.forEach((side, index) => {
       const name = `${this.joint}_${side}`;
@@ -104,8 +113,6 @@ export class RollingChart {
       this.rows[index].lower.push(value === null ? null : value - spread);
       if (value !== null) this.widen(value);
     });
-    this.forget(pose.at_s - SPAN_S - 0.2);
-    this.draw(pose.at_s);
   }
 
   /** A contact of a foot: a tick with its letter at the foot of the chart. */

@@ -147,8 +147,8 @@ class Card {
     this.node = el(
       "a",
       { class: "card", href: `#/sessions/${session.id}` },
-      el("div", { class: "card-head" }, this.title, this.code),
-      this.word,
+      this.title,
+      el("div", { class: "card-head" }, this.word, this.code),
       facts,
       this.advice,
       this.age,

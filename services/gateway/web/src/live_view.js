@@ -129,7 +129,7 @@ export class LiveView {
       this.advice.hidden = pose.message === "";
       const figure = this.body && figureOf(pose, this.body);
       if (figure) this.skeleton.show(figure);
-      for (const chart of this.charts) chart.add(pose);
+      for (const chart of this.charts) chart.add(pose, pose.trail);
       this.numbers.onPose(pose);
       this.showSensors();
       this.tick();
@@ -230,8 +230,8 @@ function chartPanel({ joint, title, range }) {
     start() {
       this.rolling = new RollingChart(host, joint, range);
     },
-    add(pose) {
-      this.rolling.add(pose);
+    add(pose, trail) {
+      this.rolling.add([...trail, pose]);
       for (const side of ["left", "right"]) {
         const value = degrees(pose.angles[`${joint}_${side}`]);
         say(now[side], `${side === "left" ? "L" : "R"} ${number(value, 0)}${value === null ? "" : "°"}`);
