@@ -27,4 +27,16 @@ def rhythm(json_path: Path | None = None) -> Scoreboard:
     return run(json_path)
 
 
-SCOREBOARDS: dict[str, Callable[..., Scoreboard]] = {"accuracy": accuracy, "rhythm": rhythm, "step": step}
+def recovery(json_path: Path | None = None) -> Scoreboard:
+    """What a kill of the archive costs, before and after its restart, and what a flush costs."""
+    from services.bench.recovery import run
+
+    return run(json_path)
+
+
+SCOREBOARDS: dict[str, Callable[..., Scoreboard]] = {
+    "accuracy": accuracy,
+    "recovery": recovery,
+    "rhythm": rhythm,
+    "step": step,
+}
