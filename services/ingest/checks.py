@@ -20,7 +20,7 @@ class PlausibilityLimits:
     gravity_tolerance: float = 0.5  # m/s^2
     still_spread: float = 0.05  # of the mean: specific force may vary by this within the quietest second
     motionless_spread: float = 0.015  # of the mean: below it a body part hardly turns either
-    turning_when_still: float = 0.1  # rad/s, mean norm within the quietest second
+    turning_when_still: float = 0.1  # rad/s, mean norm within the calmest motionless second
     fastest_turn: float = 45.0  # rad/s; gait sensors end at 35 (2000 deg/s), feet reach 33
     tilt_to_explain: float = 0.35  # rad: gravity must have turned by this before a gyro can be called too small
     explained_share: float = 0.33  # of that angle that the gyro must account for, dimensionless
@@ -50,8 +50,10 @@ def check_units(
     if spread[quietest] > limits.still_spread * gravity:
         return
     _check_gravity(where, gravity, units.specific_force, limits)
-    if spread[quietest] < limits.motionless_spread * gravity:
-        _check_stillness(where, samples.angular_velocity[quietest : quietest + width], units.angular_velocity, limits)
+    motionless = spread < limits.motionless_spread * gravity
+    if motionless.any():
+        turning = _moving_mean(np.linalg.norm(samples.angular_velocity, axis=1), width)
+        _check_stillness(where, float(turning[motionless].min()), units.angular_velocity, limits)
     _check_tilt_explained(where, mean, samples.angular_velocity, rate_hz, units.angular_velocity, limits)
 
 
@@ -63,6 +65,11 @@ def _moving_mean_and_spread(vectors: Values, width: int) -> tuple[Values, Values
     mean = (sums[width:] - sums[:-width]) / width
     variance = (squares[width:] - squares[:-width]) / width - (mean**2).sum(axis=1)
     return mean + vectors.mean(axis=0), np.sqrt(np.maximum(variance, 0.0))
+
+
+def _moving_mean(values: Values, width: int) -> Values:
+    sums = np.cumsum(np.concatenate([[0.0], values]))
+    return np.asarray((sums[width:] - sums[:-width]) / width)
 
 
 def _check_gravity(where: str, gravity: float, unit: str, limits: PlausibilityLimits) -> None:
@@ -78,8 +85,7 @@ def _check_gravity(where: str, gravity: float, unit: str, limits: PlausibilityLi
     )
 
 
-def _check_stillness(where: str, still: Values, unit: str, limits: PlausibilityLimits) -> None:
-    turning = float(np.linalg.norm(still, axis=1).mean())
+def _check_stillness(where: str, turning: float, unit: str, limits: PlausibilityLimits) -> None:
     if turning <= limits.turning_when_still:
         return
     raise WrongUnits(

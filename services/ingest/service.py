@@ -112,11 +112,13 @@ class IngestService:
 
     def _start(self, body: bytes) -> bytes:
         order = parse_order(StartOrder, body)
+        if order.session in self._descriptions:
+            raise InvalidOrder(f"session {order.session} runs already; stop it or choose another id")
         source = open_source(order.source, session=order.session, estimator=order.estimator)
         description = source.describe()
         with self._lock:
             if description.session in self._descriptions:
-                raise InvalidOrder(f"session {description.session} runs already; stop it or choose another id")
+                raise InvalidOrder(f"session {description.session} was started by another order just now")
             self._descriptions[description.session] = description
         self._loop.post(lambda: self._play(source, description, order))
         return description.model_dump_json().encode()

@@ -1,0 +1,198 @@
+"""Ingest on a real bus: what it sends is what a plain loop sends, and no order brings it down."""
+
+import json
+import threading
+import time
+
+import pytest
+
+from schemas.health import Progress
+from schemas.session import SessionDescription
+from schemas.signals import command_key, description_key, progress_key, session_token_key
+from services.bus.connection import Bus
+from services.bus.router import open_router
+from services.bus.settings import BusSettings
+from services.flow.message import Envelope, encode_payload
+from services.ingest.parameters import IngestParameters
+from services.ingest.service import IngestService
+from services.ingest.source import iter_messages, open_source
+
+pytestmark = pytest.mark.system
+
+SITE = "test"
+WALK = "synthetic:walk?duration=6&seed=2"
+QUICK = IngestParameters(free_after_s=0.2, linger_s=30.0, farewell_s=0.3)
+
+
+def wait_until(condition, timeout_s=20.0):
+    end = time.monotonic() + timeout_s
+    while not condition():
+        assert time.monotonic() < end, f"not within {timeout_s} s"
+        time.sleep(0.01)
+
+
+class Stage:
+    """A running ingest and somebody who listens."""
+
+    def __init__(self, settings, bus, service):
+        self.bus = bus
+        self.settings = settings
+        self.service = service
+        self.received = []
+        self.tokens = {}
+        bus.subscribe(f"ambula/{SITE}/*/imu/*", self.received.append)
+        bus.subscribe(f"ambula/{SITE}/*/reference/*", self.received.append)
+        bus.watch_tokens(session_token_key(SITE, "*"), lambda key, alive: self.tokens.update({key: alive}))
+
+    def order(self, command, body):
+        data = body if isinstance(body, bytes) else json.dumps(body).encode()
+        answers = self.bus.ask(command_key(SITE, "ingest", command), body=data, timeout_s=20.0)
+        return json.loads(answers[0].payload)
+
+    def start(self, source=WALK, speed=None, session="s1", **more):
+        return self.order("start", {"source": source, "speed": speed, "session": session, **more})
+
+    def of(self, session):
+        """Messages of a session in order of arrival: stream, envelope, payload."""
+        return [
+            (key[3] + "/" + key[4], Envelope.decode(message.attachment), message.payload)
+            for message in list(self.received)
+            if (key := message.key.split("/"))[2] == session
+        ]
+
+    def ends(self, session):
+        return sum(envelope.final for _, envelope, _ in self.of(session))
+
+
+@pytest.fixture
+def stage():
+    with open_router(BusSettings(router="tcp/127.0.0.1:0", site=SITE)) as router:
+        settings = BusSettings(router=router.endpoint, site=SITE)
+        stop = threading.Event()
+        with Bus.open(settings, "ingest") as bus, Bus.open(settings, "listener") as listener:
+            service = IngestService(bus, stop, QUICK)
+            thread = threading.Thread(target=service.run)
+            thread.start()
+            stage = Stage(settings, listener, service)
+            wait_until(lambda: listener.ask(command_key(SITE, "ingest", "sources"), timeout_s=0.5))
+            yield stage
+            stop.set()
+            thread.join(20.0)
+            assert not thread.is_alive()
+
+
+def plain(source=WALK):
+    return [
+        (message.stream.name, message.envelope, encode_payload(message.payload))
+        for message in iter_messages(open_source(source, session="s1"))
+    ]
+
+
+@pytest.mark.parametrize("speed", [None, 4.0])
+def test_live_is_the_plain_loop(stage, speed):
+    description = SessionDescription.model_validate(stage.start(speed=speed))
+    assert description.model_copy(update={"started_unix_ns": 0}) == open_source(
+        WALK, session="s1"
+    ).describe().model_copy(update={"started_unix_ns": 0})
+    wait_until(lambda: stage.ends("s1") == 2)
+    for stream in ("imu/walker", "reference/reference"):
+        assert [m for m in stage.of("s1") if m[0] == stream] == [m for m in plain() if m[0] == stream]
+
+
+def test_real_time_takes_its_time(stage):
+    started = time.monotonic()
+    stage.start("synthetic:walk?duration=5", speed=5.0)
+    wait_until(lambda: stage.ends("s1") == 2)
+    assert time.monotonic() - started >= 0.9
+
+
+def test_the_token_stays_until_the_archive_has_everything(stage):
+    stage.start()
+    key = session_token_key(SITE, "s1")
+    wait_until(lambda: stage.ends("s1") == 2)
+    assert stage.tokens[key]
+    answers = stage.bus.ask(description_key(SITE, "s1"))
+    assert SessionDescription.model_validate_json(answers[0].payload).session == "s1"
+    last = {name: envelope.sequence for name, envelope, _ in stage.of("s1") if envelope.final}
+    progress = Progress(service="archive", captured_ns=0, positions=last)
+    stage.bus.put(progress_key(SITE, "s1", "archive"), progress.model_dump_json().encode())
+    wait_until(lambda: not stage.tokens[key])
+    assert stage.bus.ask(description_key(SITE, "s1"), timeout_s=0.5) == []
+
+
+def test_a_replay_waits_for_its_slowest_reader(stage):
+    stage.start("synthetic:walk?duration=40", speed=None)
+    reader = Progress(service="estimation", captured_ns=0, positions={"imu/walker": 50})
+    put = stage.bus.put
+    for _ in range(10):
+        put(progress_key(SITE, "s1", "estimation"), reader.model_dump_json().encode())
+        time.sleep(0.02)
+    time.sleep(0.5)
+    newest = max(envelope.captured_ns for _, envelope, _ in stage.of("s1"))
+    assert 9_000_000_000 < newest <= 10_500_000_000
+
+    def followed():
+        done = {"imu/walker": sum(name == "imu/walker" for name, _, _ in stage.of("s1")) - 1}
+        progress = reader.model_copy(update={"positions": done})
+        put(progress_key(SITE, "s1", "estimation"), progress.model_dump_json().encode())
+        return stage.ends("s1") == 2
+
+    wait_until(followed)
+
+
+def test_stop_closes_the_streams(stage):
+    stage.start("synthetic:walk?duration=600", speed=1.0)
+    wait_until(lambda: len(stage.of("s1")) > 20)
+    assert stage.order("stop", {"session": "s1"}) == {"session": "s1"}
+    wait_until(lambda: stage.ends("s1") == 2)
+    imu = [envelope for name, envelope, _ in stage.of("s1") if name == "imu/walker"]
+    assert [envelope.sequence for envelope in imu] == list(range(len(imu)))
+    assert imu[-1].captured_ns == imu[-2].captured_ns
+
+
+@pytest.mark.parametrize(
+    ("command", "body", "word"),
+    [
+        ("start", b"\xff\x00", "body"),
+        ("start", {"speed": 1}, "source"),
+        ("start", {"source": "nothing", "speed": 1}, "nothing"),
+        ("start", {"source": WALK, "speed": -1}, "speed"),
+        ("start", {"source": WALK, "speed": 1, "estimator": "magic"}, "magic"),
+        ("start", {"source": WALK, "speed": 1, "session": "a/**"}, "session"),
+        ("start", {"source": "synthetic:walk?speed=99", "speed": 1}, "outside"),
+        ("start", {"source": "x" * 5000, "speed": 1}, "source"),
+        ("start", {"source": "nul\x00byte", "speed": 1}, ""),
+        ("stop", {"session": "unknown"}, "does not run"),
+        ("stop", b"[]", "body"),
+    ],
+)
+def test_a_bad_order_is_answered_and_forgotten(stage, command, body, word):
+    answer = stage.order(command, body)
+    assert word in answer["error"]
+    assert "session" in stage.start()
+
+
+def test_a_session_cannot_run_twice(stage):
+    stage.start("synthetic:walk?duration=60", speed=1.0)
+    assert "runs already" in stage.start(speed=1.0)["error"]
+
+
+def test_a_source_that_fails_midway_ends_and_leaves_the_others_alone(stage, monkeypatch):
+    stage.start("synthetic:walk?duration=20", speed=4.0, session="good")
+    running = open_source(WALK, session="bad")
+
+    class Failing:
+        describe, rejections = running.describe, running.rejections
+
+        def messages(self):
+            for index, message in enumerate(running.messages()):
+                if index == 300:
+                    raise ValueError("torn cable")
+                yield message
+
+    monkeypatch.setattr("services.ingest.service.open_source", lambda *_, **__: Failing())
+    stage.start(speed=4.0, session="bad")
+    wait_until(lambda: stage.ends("bad") == 2)
+    wait_until(lambda: stage.ends("good") == 2)
+    imu = [envelope.sequence for name, envelope, _ in stage.of("good") if name == "imu/walker"]
+    assert imu == list(range(2001))
