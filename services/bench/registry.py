@@ -34,9 +34,17 @@ def recovery(json_path: Path | None = None) -> Scoreboard:
     return run(json_path)
 
 
+def strides(json_path: Path | None = None, *subject: str) -> Scoreboard:
+    """Stride counts and event times against reviewed contacts and synthetic walks."""
+    from services.bench.strides import run
+
+    return run(json_path, *subject)
+
+
 SCOREBOARDS: dict[str, Callable[..., Scoreboard]] = {
     "accuracy": accuracy,
     "recovery": recovery,
     "rhythm": rhythm,
     "step": step,
+    "strides": strides,
 }
