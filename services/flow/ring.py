@@ -37,9 +37,9 @@ class RingExtent(NamedTuple):
 
 
 class Question(NamedTuple):
-    """What is missing of a stream: `first` to `last` of one epoch; without `last`, all that came after too.
+    """What is missing of a stream: `first` to `last` of one epoch; without `last`, newer epochs too.
 
-    `epoch` None asks for everything that is left.
+    `epoch` None means those numbers of any epoch.
     """
 
     epoch: int | None
@@ -76,10 +76,10 @@ class ReplayRing:
         return RingExtent(Place(oldest.epoch, oldest.sequence), Place(newest.epoch, newest.sequence))
 
     def _matching(self, question: Question) -> Iterator[tuple[Envelope, bytes]]:
-        first = Place(-1 if question.epoch is None else question.epoch, question.first)
+        epoch, first, last = question
         for envelope, payload in self._sent:
-            place = Place(envelope.epoch, envelope.sequence)
-            if question.last is not None and place > Place(first.epoch, question.last):
-                return
-            if place >= first:
+            asked_epoch = epoch is None or envelope.epoch == epoch
+            later_epoch = epoch is not None and last is None and envelope.epoch > epoch
+            in_span = envelope.sequence >= first and (last is None or envelope.sequence <= last)
+            if later_epoch or (asked_epoch and in_span):
                 yield envelope, payload

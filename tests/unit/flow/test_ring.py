@@ -53,6 +53,7 @@ def test_what_came_after_includes_newer_epochs():
     assert numbers(ring, Question(0, 3, 9)) == [3, 4]
     assert numbers(ring, Question(7, 1, None)) == [1, 2]
     assert numbers(ring, Question(None, 0, None)) == [0, 1, 2, 3, 4, 0, 1, 2]
+    assert numbers(ring, Question(None, 2, 3)) == [2, 3, 2]
     assert ring.extent() == RingExtent(Place(0, 0), Place(7, 2))
 
 
