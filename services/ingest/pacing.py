@@ -50,17 +50,21 @@ class Readers:
     """Who reads this session's own streams, and how far each is; learnt from Progress messages.
 
     Services further down the chain are not counted: they may have nothing to read for minutes (a standing patient
-    makes no strides), and who reads the samples waits for nobody.
+    makes no strides), and who reads the samples waits for nobody. `streams` are the session's own, signal/source.
     """
 
+    streams: list[str]
     parameters: IngestParameters = PARAMETERS
-    _sent: dict[str, tuple[list[int], list[int]]] = field(default_factory=dict)
+    _sent: dict[str, tuple[list[int], list[int]]] = field(init=False)
     _readers: dict[str, _Reader] = field(default_factory=dict)
     _positions: dict[str, dict[str, int]] = field(default_factory=dict)
 
+    def __post_init__(self) -> None:
+        self._sent = {stream: ([], []) for stream in self.streams}
+
     def sent(self, stream: str, sequence: int, captured_ns: int) -> None:
         """A message went out."""
-        sequences, times = self._sent.setdefault(stream, ([], []))
+        sequences, times = self._sent[stream]
         sequences.append(sequence)
         times.append(captured_ns)
         if len(sequences) > 2 * MOST_REMEMBERED:
@@ -87,15 +91,10 @@ class Readers:
         followed = [reader.done_ns for reader in self._readers.values() if now_s - reader.stepped_s < silent_s]
         return min(followed, default=None)
 
-    def has_everything(self, service: str, last: dict[str, int]) -> bool:
-        """The service has every stream up to the sequence number given for it."""
-        positions = self._positions.get(service, {})
-        return all(positions.get(name, -1) >= sequence for name, sequence in last.items())
-
     def _captured_ns(self, name: str, position: int) -> int:
         """Session time of a stream's message; what was sent before it is forgotten once all have it."""
         sequences, times = self._sent[name]
-        return times[max(bisect_right(sequences, position) - 1, 0)]
+        return times[max(bisect_right(sequences, position) - 1, 0)] if times else 0
 
     def forget(self) -> None:
         """Drop the record of messages that every reader has."""

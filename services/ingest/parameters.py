@@ -18,7 +18,7 @@ class IngestParameters:
     most_ahead_s: float = 10.0  # s of session time that an unpaced replay may be ahead of its slowest reader
     silent_after_s: float = 60.0  # without any step forward a reader is no longer waited for
     free_after_s: float = 5.0  # without any reader at all an unpaced replay runs on
-    linger_s: float = 60.0  # rings stay this long after the end when no archive says that it has everything
+    linger_s: float = 60.0  # token and rings stay this long after the end when no service makes a step any more
     farewell_s: float = 2.0  # for the archive to take the last messages when the service is told to stop
 
 

@@ -74,7 +74,7 @@ class Playback:
         parameters: IngestParameters = PARAMETERS,
     ) -> None:
         self.description = description
-        self.readers = Readers(parameters)
+        self.readers = Readers([stream.name for stream in streams_of(description)], parameters)
         self.ended_at_s: float | None = None
         self._source = source
         self._parameters = parameters
@@ -89,6 +89,9 @@ class Playback:
         self._publishers = {stream: StreamPublisher(bus, session, stream) for stream in streams_of(description)}
         self._token = bus.declare_token(session_token_key(bus.settings.site, session))
         self._captured_ns = 0
+        self._done_ns: dict[str, int] = {}
+        self._last_step_s = now_s
+        self._is_recorded = False
 
     def pump(self, now_s: float) -> None:
         """Send what is due. A source that fails on the way ends its session, with the reason in the log."""
@@ -103,7 +106,7 @@ class Playback:
             raise RuntimeError(f"session {self.description.session}: the source failed: {error}") from error
 
     def end(self, now_s: float) -> None:
-        """Close the streams. Rings and token stay until the archive has everything."""
+        """Close the streams. Rings and token stay until the session is recorded."""
         if self.ended_at_s is not None:
             return
         for message in self._batcher.flush():
@@ -118,17 +121,24 @@ class Playback:
         """A reader said how far it is."""
         self.readers.report(service, progress.positions, now_s)
         self.readers.forget()
+        if progress.captured_ns > self._done_ns.get(service, -1):
+            self._done_ns[service] = progress.captured_ns
+            self._last_step_s = now_s
+        self._is_recorded |= service == ARCHIVE and progress.ended
 
-    def is_archived(self) -> bool:
-        """The streams are closed and the archive has their ends."""
-        last = {stream.name: self._last_sequence(stream) for stream in self._publishers}
-        return self.ended_at_s is not None and self.readers.has_everything(ARCHIVE, last)
+    def is_recorded(self) -> bool:
+        """The streams are closed, and the archive has them and all that was computed from them."""
+        return self.ended_at_s is not None and self._is_recorded
 
     def is_over(self, now_s: float) -> bool:
-        """Nobody needs the rings any more, or nobody came for them in time."""
+        """All is recorded, or nobody has made a step with the session for long.
+
+        Until then its token stays: a service that crashes after the last sample comes back to a session it can find.
+        """
         if self.ended_at_s is None:
             return False
-        return self.is_archived() or now_s - self.ended_at_s >= self._parameters.linger_s
+        quiet_s = now_s - max(self.ended_at_s, self._last_step_s)
+        return self.is_recorded() or quiet_s >= self._parameters.linger_s
 
     def health(self) -> SessionHealth:
         """What was left out of the source."""
@@ -162,7 +172,3 @@ class Playback:
         envelope = self._publishers[message.stream].send(message.captured_ns, message.payload)
         self.readers.sent(message.stream.name, envelope.sequence, message.captured_ns)
         self._captured_ns = max(self._captured_ns, message.captured_ns)
-
-    def _last_sequence(self, stream: Stream) -> int:
-        newest = self._publishers[stream].newest
-        return -1 if newest is None else newest.sequence

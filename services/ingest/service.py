@@ -212,7 +212,7 @@ class IngestService:
         for playback in self._running.values():
             playback.end(now_s)
         self._loop.run_for(
-            self._parameters.farewell_s, lambda: all(playback.is_archived() for playback in self._running.values())
+            self._parameters.farewell_s, lambda: all(playback.is_recorded() for playback in self._running.values())
         )
         for playback in self._running.values():
             playback.close()

@@ -11,7 +11,7 @@ SECOND = 1_000_000_000
 
 
 def sent_readers(count=1000):
-    readers = Readers()
+    readers = Readers(["imu/hub", "reference/reference"])
     for sequence in range(count):
         readers.sent("imu/hub", sequence, sequence * 10_000_000)
     return readers
@@ -59,9 +59,15 @@ def test_a_reader_that_stands_still_is_left_behind():
 
 
 def test_without_readers_it_waits_a_little_and_goes_on():
-    pace = AsFastAsFollowed(Readers(), started_s=0.0)
+    pace = AsFastAsFollowed(Readers(["imu/hub"]), started_s=0.0)
     assert pace.limit_ns(4.9) == 10 * SECOND
     assert pace.limit_ns(5.1) == FAR_NS
+
+
+def test_a_reader_may_speak_before_anything_was_sent():
+    readers = Readers(["imu/hub"])
+    readers.report("estimation", {"imu/hub": -1}, 0.1)
+    assert readers.slowest_ns(0.2) == 0
 
 
 def test_the_archive_has_everything_only_with_every_end():
