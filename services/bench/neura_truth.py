@@ -70,7 +70,7 @@ def knee_from_joint_centres(channels: dict[str, Array], side: Side) -> Array:
     def inclination(line: Array) -> Array:
         return np.asarray(np.arctan2(np.sum(line * forward, axis=1), -line[:, 1]))
 
-    return np.degrees(inclination(knee - hip) - inclination(ankle - knee))
+    return np.asarray(np.degrees(inclination(knee - hip) - inclination(ankle - knee)))
 
 
 def hip_from_segments(channels: dict[str, Array], side: Side) -> Array:
@@ -84,7 +84,7 @@ def hip_from_segments(channels: dict[str, Array], side: Side) -> Array:
         if np.isfinite(p).all() and np.isfinite(t).all():
             R_pelvis_from_thigh = matrix_from_quaternion(p).T @ matrix_from_quaternion(t)
             flexion[i] = np.arctan2(-R_pelvis_from_thigh[0, 1], R_pelvis_from_thigh[1, 1])
-    return np.degrees(flexion)
+    return np.asarray(np.degrees(flexion))
 
 
 def _quaternions(channels: dict[str, Array], segment: str) -> Array:

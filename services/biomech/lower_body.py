@@ -103,14 +103,21 @@ class LowerBodyModel:
         """Indices in `dofs` of the soft knee degrees of freedom."""
         return np.array([i for i, dof in enumerate(self.dofs) if _is_soft(dof)], dtype=np.int64)
 
+    @cached_property
+    def _joints(self) -> dict[Segment, list[int]]:
+        first = self.first_rotation
+        joints: dict[Segment, list[int]] = {segment: [] for segment in SEGMENTS}
+        for i, dof in enumerate(self.dofs[first:]):
+            joints[segment_of(dof)].append(first + i)
+        return joints
+
     def joints_of(self, segment: Segment) -> list[int]:
         """Indices in `dofs` of the rotations between a segment and its parent."""
-        first = self.first_rotation
-        return [first + i for i, dof in enumerate(self.dofs[first:]) if segment_of(dof) is segment]
+        return self._joints[segment]
 
     def last_joint(self, segment: Segment) -> int:
         """Index in `dofs` of the joint whose frame is the segment's."""
-        return self.joints_of(segment)[-1]
+        return self._joints[segment][-1]
 
     def offset_of(self, segment: Segment) -> tuple[float, float, float]:
         """m, the segment's proximal joint in its parent's frame."""

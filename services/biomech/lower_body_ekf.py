@@ -21,9 +21,6 @@ Array = NDArray[np.float64]
 YAW_MODES = {"none": 0, "world": 1, "relative": 2}
 PAD = 4
 """Doubles in a vector register."""
-NOMINAL_DT_S = 0.01
-"""s. Virtual measurements are stated for 100 Hz; at other rates their variance is scaled so that the information
-they give per second stays the same."""
 
 
 @dataclass(frozen=True)
@@ -86,14 +83,14 @@ class LowerBodyEkf:
         self.padded_covariance = np.zeros((N, padded_length(N)))
         self.P = self.padded_covariance[:, :N]
         self.P[:] = np.diag(self._start_variance(N))
-        self._rest = np.zeros((3, n))
         self._motion = empty_motion(n)
         M = self.padded_covariance.shape[1]
         self._update = Update(
             np.zeros((S, 6, M)), np.zeros((S, 6)), np.zeros((6, M)), np.zeros(6), np.zeros(6),
             np.zeros(M), np.zeros((6, M)), np.zeros((6, 6)), np.zeros(6),
         )  # fmt: skip
-        self._variances = _noise(model, S, noise)
+        variances = _noise(model, S, noise)
+        self._tables = (self.body, self.sensors, self.columns, self.options, variances, self._motion, self._update)
 
     def advance(self, dt_s: float, samples: Array, fresh: NDArray[np.bool_], jerk: Array, rest: Array) -> None:
         """Predict over dt_s >= 0 and fuse.
@@ -101,22 +98,11 @@ class LowerBodyEkf:
         samples (S, 6) rad/s and m/s^2 in the sensor frames, finite where `fresh` (S,); jerk (n,) rad/s^3;
         rest (3, n) variance at 100 Hz of "this joint's position/velocity/acceleration is zero", 0 for none.
         """
-        per_time = NOMINAL_DT_S / dt_s if dt_s > 0.0 else np.inf
-        options, variances = self.options, self._variances
-        if dt_s > 0.0:
-            np.multiply(rest, per_time, out=self._rest)
-            variances = variances._replace(yaw=self.noise.yaw_std**2 * per_time)
-        else:
-            self._rest[:] = 0.0
-            options = options._replace(yaw_mode=0)
-        step(
-            self.x, self.padded_covariance, dt_s, jerk, samples, fresh, self.bias, self._rest,
-            self.body, self.sensors, self.columns, options, variances, self._motion, self._update,
-        )  # fmt: skip
+        step(self.x, self.padded_covariance, dt_s, jerk, samples, fresh, self.bias, rest, *self._tables)
 
     def tables(self) -> tuple[Body, Sensors, Columns, Options, Noise, Motion, Update]:
         """The kernels' tables and scratch, in the order in which `step` takes them."""
-        return self.body, self.sensors, self.columns, self.options, self._variances, self._motion, self._update
+        return self._tables
 
     def settle(self) -> None:
         """After a time without samples: keep the pose, forget how it moved and how sure it was."""
@@ -129,18 +115,13 @@ class LowerBodyEkf:
             column = joint - self.model.first_rotation
             self.P[column, column] += self.noise.start_position_std**2
 
-    def position_std(self) -> Array:
-        """(n,) standard deviation of the positions, rad; 0 for translations."""
-        return self._std(0)
-
-    def velocity_std(self) -> Array:
-        """(n,) standard deviation of the velocities, rad/s; 0 for translations."""
-        return self._std(1)
-
-    def _std(self, order: int) -> Array:
-        t, r = self.model.first_rotation, len(self.model.dofs) - self.model.first_rotation
-        variance = np.diagonal(self.P)[order * r : (order + 1) * r]
-        return np.concatenate([np.zeros(t), np.sqrt(np.maximum(variance, 0.0))])
+    def deviations(self) -> Array:
+        """(2, n) standard deviations of position, rad, and velocity, rad/s; 0 for translations."""
+        r = len(self.model.dofs) - self.model.first_rotation
+        deviations = np.zeros((2, len(self.model.dofs)))
+        variances = self.P.diagonal()[: 2 * r].reshape(2, r)
+        np.sqrt(np.maximum(variances, 0.0), out=deviations[:, self.model.first_rotation :])
+        return deviations
 
     def _start_variance(self, N: int) -> Array:
         r = len(self.model.dofs) - self.model.first_rotation

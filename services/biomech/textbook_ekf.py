@@ -11,8 +11,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from schemas.vocabulary import Segment
+from services.biomech.kernels.step import NOMINAL_DT_S
 from services.biomech.lower_body import LowerBodyModel, SensorMount
-from services.biomech.lower_body_ekf import NOMINAL_DT_S, MeasurementModel, NoiseModel
+from services.biomech.lower_body_ekf import MeasurementModel, NoiseModel
 from services.biomech.pinocchio_model import PinocchioBody
 
 Array = NDArray[np.float64]
@@ -70,9 +71,8 @@ class TextbookEkf:
         g = np.array([dt_s**3 / 6.0, h, dt_s])
         is_rotation = np.arange(self.n) >= self.t
         Q = np.kron(np.outer(g, g) / dt_s, np.diag(is_rotation * self.noise.jerk_density))
-        walk = np.diag(~is_rotation * self.noise.translation_density * dt_s)
-        Q[2 * self.n :, 2 * self.n :] += walk
-        return F, g, Q
+        Q[2 * self.n :, 2 * self.n :] += np.diag(~is_rotation * self.noise.translation_density * dt_s)
+        return np.asarray(F), g, np.asarray(Q)
 
     def _measurement(self, samples: Array, dt_s: float) -> tuple[Array, Array, Array]:
         """Innovations, Jacobian and noise covariance of all rows."""

@@ -80,7 +80,7 @@ class Intake:
         for captured_ns, rate, force in zip(
             samples.captured_ns, samples.angular_velocity, samples.specific_force, strict=True
         ):
-            values = np.array([*rate, *force], dtype=np.float64)
+            values = (*rate, *force)
             if captured_ns <= self._passed_ns and self._is_new(place, captured_ns):
                 self.checks.refuse(self.sensors[place].name, Reason.LATE)
             elif self.checks.accept(place, captured_ns, values, message_ns):
@@ -126,7 +126,7 @@ class Intake:
         self._reached_ns = list(state["reached_ns"])
         self._passed_ns = state["passed_ns"]
         self._waiting = [_Pending(*pending) for pending in state["waiting"]]
-        values = unpack_array(state["samples"])
+        values = unpack_array(state["samples"]).tolist()
         self._samples = [
             Sample(time_ns, place, row) for (time_ns, place), row in zip(state["samples_ns"], values, strict=True)
         ]

@@ -91,8 +91,8 @@ def estimated_pose(
         phase="estimating",
         message=sensor_troubles(statuses),
         segments=segment_pictures(model, position, unseen),
-        angles={name: float(row.position[i]) for i, name in seen},
-        angles_std={name: float(row.position_std[i]) for i, name in seen},
+        angles={name: row.position[i] for i, name in seen},
+        angles_std={name: row.position_std[i] for i, name in seen},
         sensors=statuses,
         # Two steps a stride.
         cadence_per_min=row.rhythm.frequency / (2.0 * math.pi) * 120.0 if row.rhythm.locked else None,

@@ -27,11 +27,11 @@ class Row(NamedTuple):
     """Estimates at one instant, in the order of LOWER_BODY, and the rhythm."""
 
     captured_ns: int
-    position: Array  # (15,) rad
-    velocity: Array  # (15,) rad/s
-    acceleration: Array  # (15,) rad/s^2
-    position_std: Array  # (15,) rad
-    velocity_std: Array  # (15,) rad/s
+    position: list[float]  # (15,) rad
+    velocity: list[float]  # (15,) rad/s
+    acceleration: list[float]  # (15,) rad/s^2
+    position_std: list[float]  # (15,) rad
+    velocity_std: list[float]  # (15,) rad/s
     rhythm: RhythmReading
 
 
@@ -57,8 +57,9 @@ class LowerBodyFilter:
         self.model = LowerBodyModel(
             description.anthropometry, parameters.measurement.accel_sees_motion, parameters.soft_knees
         )
-        self._sensors = sensors
+        self._segments = [sensor.segment for sensor in sensors]
         self._aligned = calibrated.alignment.aligned
+        self._is_aligned: list[bool] = self._aligned.tolist()
         frames = calibrated.alignment.R_segment_from_sensor
         mounts = [_mount(sensor, R) for sensor, R in zip(sensors, frames, strict=True)]
         self.ekf = LowerBodyEkf(self.model, mounts, calibrated.gyro_bias, parameters.measurement, parameters.noise)
@@ -70,28 +71,38 @@ class LowerBodyFilter:
         self._heard_ns: list[int] = []
         self.unseen: frozenset[Segment] = frozenset(SEGMENTS)
         """Segments without an aligned sensor that spoke of late."""
-
-    def valid(self) -> list[bool]:
-        """Per LOWER_BODY dof: both segments of the joint are seen, and the model has the dof."""
-        valid = []
-        for dof, index in zip(LOWER_BODY, self.model.reported, strict=True):
-            segment = segment_of(dof)
-            pair = {segment, PARENT_SEGMENT.get(segment, segment)}
-            valid.append(bool(index >= 0 and not pair & self.unseen))
-        return valid
+        self.valid = self._valid_without(self.unseen)
+        """Per LOWER_BODY dof, after the newest tick."""
+        self._rest = self._rest_without(self.unseen)
 
     def _listen(self, tick: Tick) -> frozenset[Segment]:
         """Note who speaks; the segments that nobody speaks for. Everyone is given the start's benefit of the doubt."""
         if not self._heard_ns:
-            self._heard_ns = [tick.captured_ns] * len(self._sensors)
-        seen = set()
-        for s, sensor in enumerate(self._sensors):
-            if tick.fresh[s]:
+            self._heard_ns = [tick.captured_ns] * len(self._segments)
+        oldest_ns = tick.captured_ns - round(self.parameters.silent_after_s * 1e9)
+        unseen = set(SEGMENTS)
+        for s, is_fresh in enumerate(tick.fresh.tolist()):
+            if is_fresh:
                 self._heard_ns[s] = tick.captured_ns
-            spoke = tick.captured_ns - self._heard_ns[s] <= self.parameters.silent_after_s * 1e9
-            if self._aligned[s] and spoke:
-                seen.add(sensor.segment)
-        return frozenset(SEGMENTS) - seen
+            if self._is_aligned[s] and self._heard_ns[s] >= oldest_ns:
+                unseen.discard(self._segments[s])
+        return frozenset(unseen)
+
+    def _see(self, unseen: frozenset[Segment]) -> None:
+        """What changes when a sensor falls silent or comes back."""
+        for segment in sorted(self.unseen - unseen):
+            self.ekf.loosen(self.model.joints_of(segment))
+        self.unseen = unseen
+        self.valid = self._valid_without(unseen)
+        self._rest = self._rest_without(unseen)
+
+    def _valid_without(self, unseen: frozenset[Segment]) -> list[bool]:
+        """Per LOWER_BODY dof: both segments of the joint are seen, and the model has the dof."""
+        joints = [segment_of(dof) for dof in LOWER_BODY]
+        return [
+            bool(index >= 0) and not {segment, PARENT_SEGMENT.get(segment, segment)} & unseen
+            for segment, index in zip(joints, self.model.reported, strict=True)
+        ]
 
     def fuse(self, tick: Tick) -> Row:
         """Advance to the tick and take its samples in."""
@@ -100,16 +111,15 @@ class LowerBodyFilter:
             self.ekf.settle()
             self._jerk[:] = 0.0
         unseen = self._listen(tick)
-        for segment in sorted(self.unseen - unseen):
-            self.ekf.loosen(self.model.joints_of(segment))
-        self.unseen = unseen
+        if unseen != self.unseen:
+            self._see(unseen)
         step_s = dt_s if dt_s <= self.parameters.longest_step_s else 0.0
-        self.ekf.advance(step_s, tick.samples, tick.fresh & self._aligned, self._jerk, self._rest(unseen))
+        self.ekf.advance(step_s, tick.samples, tick.fresh & self._aligned, self._jerk, self._rest)
         reading = self._follow_rhythm(dt_s)
         self._last_ns = tick.captured_ns
         return self._row(tick.captured_ns, reading)
 
-    def _rest(self, unseen: frozenset[Segment]) -> Array:
+    def _rest_without(self, unseen: frozenset[Segment]) -> Array:
         """Variances of the pull to zero: soft knees always, and every joint below a segment that is not seen.
 
         Without it the variance of an unseen joint grows without bound. Its heading is left free: zero means nothing.
@@ -135,11 +145,12 @@ class LowerBodyFilter:
         return reading
 
     def _row(self, captured_ns: int, reading: RhythmReading) -> Row:
-        pick = self.model.reported
-        known = pick >= 0
-        values = (*self.ekf.x, self.ekf.position_std(), self.ekf.velocity_std())
-        columns = [np.where(known, value[pick], 0.0) for value in values]
-        return Row(captured_ns, columns[0], columns[1], columns[2], columns[3], columns[4], reading)
+        values = np.concatenate([self.ekf.x, self.ekf.deviations()])
+        if len(self.model.soft) == 0 or self.model.first_rotation > 0:
+            pick = self.model.reported
+            values = np.where(pick >= 0, values[:, pick], 0.0)
+        position, velocity, acceleration, position_std, velocity_std = values.tolist()
+        return Row(captured_ns, position, velocity, acceleration, position_std, velocity_std, reading)
 
     def snapshot(self) -> State:
         """State of filter and rhythm."""
@@ -163,6 +174,7 @@ class LowerBodyFilter:
         self._last_ns = state["last_ns"]
         self._heard_ns = list(state["heard_ns"])
         self.unseen = frozenset(Segment(name) for name in state["unseen"])
+        self.valid, self._rest = self._valid_without(self.unseen), self._rest_without(self.unseen)
         self._rhythm.restore(state["rhythm"])
         if self._driver is not None and state["driver"] is not None:
             self._driver.restore(state["driver"])

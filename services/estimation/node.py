@@ -120,7 +120,7 @@ class EstimationNode:
             return []
         rows = [running.fuse(tick) for tick in batch.ticks]
         return [
-            Output(JOINT_STATE, batch.captured_ns, _joint_state(rows, running.valid())),
+            Output(JOINT_STATE, batch.captured_ns, _joint_state(rows, running.valid)),
             Output(RHYTHM, batch.captured_ns, _rhythm(rows)),
             *self._picture(running, rows[-1]),
         ]
@@ -134,7 +134,7 @@ class EstimationNode:
         assert self._calibrated is not None
         waiting = nobody | ~self._calibrated.alignment.aligned
         statuses = sensor_statuses(self._intake.sensors, self._intake.checks, row.captured_ns, refused, waiting)
-        pose = estimated_pose(row, running.model, running.ekf.x[0], running.valid(), running.unseen, statuses)
+        pose = estimated_pose(row, running.model, running.ekf.x[0], running.valid, running.unseen, statuses)
         return [Output(LIVE_POSE, row.captured_ns, pose)]
 
     def _is_live_due(self, captured_ns: int) -> bool:
@@ -170,11 +170,11 @@ def _joint_state(rows: list[Row], valid: list[bool]) -> JointState:
     return JointState(
         model=MODEL,
         captured_ns=[row.captured_ns for row in rows],
-        position=[row.position.tolist() for row in rows],
-        velocity=[row.velocity.tolist() for row in rows],
-        acceleration=[row.acceleration.tolist() for row in rows],
-        position_std=[row.position_std.tolist() for row in rows],
-        velocity_std=[row.velocity_std.tolist() for row in rows],
+        position=[row.position for row in rows],
+        velocity=[row.velocity for row in rows],
+        acceleration=[row.acceleration for row in rows],
+        position_std=[row.position_std for row in rows],
+        velocity_std=[row.velocity_std for row in rows],
         valid=valid,
     )
 

@@ -16,12 +16,16 @@ FORCE = slice(3, 6)
 """Columns of a sample that hold the specific force, m/s^2, sensor frame."""
 
 
+Values = tuple[float, ...]
+"""Angular velocity, then specific force: six numbers."""
+
+
 class Sample(NamedTuple):
     """One usable sample of one sensor."""
 
     captured_ns: int
     sensor: int
-    values: Array  # (6,)
+    values: Values
 
 
 @dataclass(frozen=True)

@@ -1,18 +1,25 @@
 """Which samples may be used, and what state that leaves a sensor in."""
 
+import math
 from collections import Counter
+from collections.abc import Sequence
 from dataclasses import dataclass, field
+from operator import sub
 
 import numpy as np
-from numpy.typing import NDArray
 
 from schemas.health import Reason, Rejection
 from schemas.vocabulary import SensorState
 from services.estimation.parameters import CheckParameters
-from services.estimation.samples import FORCE, RATE
+from services.estimation.samples import FORCE, RATE, Values
 from services.flow.node import State, pack_array, unpack_array
 
-Array = NDArray[np.float64]
+NOTHING_YET: Values = (math.nan,) * 6
+
+
+def largest(values: Sequence[float]) -> float:
+    """Largest magnitude; not a number counts as nothing."""
+    return max(map(abs, values))
 
 
 @dataclass
@@ -21,7 +28,7 @@ class SensorRecord:
 
     newest_ns: int | None = None  # of any sample whose clock was right
     usable_ns: int | None = None  # of the last sample that was used
-    values: Array = field(default_factory=lambda: np.full(6, np.nan))  # last sample, used or not
+    values: Values = NOTHING_YET  # last sample, used or not
     repeats: int = 0  # how often those values came again
     jumped: bool = False  # the last sample was refused as a jump
 
@@ -42,7 +49,7 @@ class SensorChecks:
         """Count something that was not used."""
         self.refused[subject, reason] += count
 
-    def accept(self, sensor: int, captured_ns: int, values: Array, message_ns: int) -> bool:
+    def accept(self, sensor: int, captured_ns: int, values: Values, message_ns: int) -> bool:
         """Whether a sample (6,) may be used."""
         reason = self._reason(self.records[sensor], captured_ns, values, message_ns)
         if reason is not None:
@@ -51,24 +58,24 @@ class SensorChecks:
         self.records[sensor].usable_ns = captured_ns
         return True
 
-    def _reason(self, record: SensorRecord, captured_ns: int, values: Array, message_ns: int) -> Reason | None:
+    def _reason(self, record: SensorRecord, captured_ns: int, values: Values, message_ns: int) -> Reason | None:
         limits = self.parameters
         if abs(captured_ns - message_ns) > limits.farthest_from_message_s * 1e9:
             return Reason.OUT_OF_RANGE
         if record.newest_ns is not None and captured_ns <= record.newest_ns:
             return Reason.CLOCK_BACKWARDS
-        if not np.isfinite(values).all():
+        if not all(map(math.isfinite, values)):
             return Reason.NOT_FINITE
         record.newest_ns = captured_ns
-        record.repeats = record.repeats + 1 if np.array_equal(values, record.values) else 0
-        jump = np.abs(values - record.values)
-        record.values = values
-        if np.abs(values[RATE]).max() > limits.largest_rate or np.abs(values[FORCE]).max() > limits.largest_force:
+        before, record.values = record.values, values
+        record.repeats = record.repeats + 1 if values == before else 0
+        if largest(values[RATE]) > limits.largest_rate or largest(values[FORCE]) > limits.largest_force:
             return Reason.OUT_OF_RANGE
         if record.repeats >= limits.stuck_after:
             return Reason.STUCK
         # A lone jump is a broken sample; when the next one stays there, it was a real change.
-        jumps = bool(jump[RATE].max() > limits.rate_jump or jump[FORCE].max() > limits.force_jump)
+        jump = tuple(map(sub, values, before))
+        jumps = largest(jump[RATE]) > limits.rate_jump or largest(jump[FORCE]) > limits.force_jump
         record.jumped = jumps and not record.jumped
         return Reason.OUT_OF_RANGE if record.jumped else None
 
@@ -105,9 +112,9 @@ class SensorChecks:
     def restore(self, state: State) -> None:
         """Inverse of `snapshot`."""
         self.records = [
-            SensorRecord(newest_ns, usable_ns, values, repeats, jumped)
+            SensorRecord(newest_ns, usable_ns, tuple(values), repeats, jumped)
             for (newest_ns, usable_ns, repeats, jumped), values in zip(
-                state["records"], unpack_array(state["values"]), strict=True
+                state["records"], unpack_array(state["values"]).tolist(), strict=True
             )
         ]
         self.refused = Counter({(subject, Reason(reason)): count for subject, reason, count in state["refused"]})

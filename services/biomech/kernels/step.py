@@ -22,6 +22,10 @@ from services.biomech.kernels.measurement import (
 )
 from services.biomech.kernels.tables import Array, Body, Columns, Flags, Motion, Noise, Options, Sensors, Update
 
+NOMINAL_DT_S = 0.01
+"""s. Virtual measurements are stated for 100 Hz; at other rates their variance is scaled so that the information
+they give per second stays the same."""
+
 
 @kernel
 def predicted_sample(
@@ -54,7 +58,14 @@ def update_sensor(s: int, P: Array, columns: Columns, noise: Noise, update: Upda
 
 @kernel
 def yaw_rows(
-    P: Array, body: Body, columns: Columns, options: Options, motion: Motion, noise: Noise, update: Update
+    P: Array,
+    body: Body,
+    columns: Columns,
+    options: Options,
+    motion: Motion,
+    noise: Noise,
+    share: float,
+    update: Update,
 ) -> int:
     """The virtual yaw measurement (Joukov eq. 22) as the first virtual rows; how many there are.
 
@@ -71,7 +82,7 @@ def yaw_rows(
             pelvis = yaw_row(bodies[0], body, motion, -1.0, H[i])
             thigh = yaw_row(bodies[i + 1], body, motion, 1.0, H[i])
             e[i] = (pelvis - thigh + np.pi) % (2.0 * np.pi) - np.pi
-        update.virtual_variance[i] = noise.yaw
+        update.virtual_variance[i] = noise.yaw * share
     project(P, H, 0, rows, columns.yaw, columns.yaw.size, update.W)
     return rows
 
@@ -88,7 +99,7 @@ def update_virtual(P: Array, rows: int, update: Update) -> None:
 
 
 @kernel
-def rest_rows(x: Array, P: Array, rest: Array, rows: int, translations: int, update: Update) -> int:
+def rest_rows(x: Array, P: Array, rest: Array, share: float, rows: int, translations: int, update: Update) -> int:
     """Measurements of single states as zero, behind the `rows` there are; six at a time are fused."""
     n, W = x.shape[1], update.W
     for order in range(3):
@@ -98,7 +109,7 @@ def rest_rows(x: Array, P: Array, rest: Array, rows: int, translations: int, upd
             c = column(order, j, translations, n)
             update.virtual_H[rows, c] = 1.0
             update.virtual_innovation[rows] = -x[order, j]
-            update.virtual_variance[rows] = rest[order, j]
+            update.virtual_variance[rows] = rest[order, j] * share
             for k in range(P.shape[1]):
                 W[rows, k] = P[c, k]
             rows += 1
@@ -106,6 +117,20 @@ def rest_rows(x: Array, P: Array, rest: Array, rows: int, translations: int, upd
                 update_virtual(P, rows, update)
                 rows = 0
     return rows
+
+
+@kernel
+def fuse_virtual(
+    x: Array, P: Array, rest: Array, share: float,
+    body: Body, columns: Columns, options: Options, noise: Noise, motion: Motion, update: Update,
+) -> None:  # fmt: skip
+    """Yaw and rest measurements; `share` makes their information per second the same at every rate."""
+    rows = 0
+    if options.yaw_mode > 0:
+        rows = yaw_rows(P, body, columns, options, motion, noise, share, update)
+    rows = rest_rows(x, P, rest, share, rows, body.translations, update)
+    if rows > 0:
+        update_virtual(P, rows, update)
 
 
 @kernel
@@ -136,8 +161,8 @@ def step(
     """Advance the filter by dt >= 0 and fuse one sample of each fresh sensor.
 
     x (3, n), P (N, N) are changed in place. samples (S, 6): rad/s and m/s^2 in the sensor frame, fresh (S,),
-    bias (S, 3) rad/s, jerk (n,), rest (3, n): variance of the pseudo-measurement "is zero" of each joint's
-    position, velocity, acceleration; 0 where there is none. All innovations are taken at the predicted state,
+    bias (S, 3) rad/s, jerk (n,), rest (3, n): variance at 100 Hz of the pseudo-measurement "is zero" of each
+    joint's position, velocity, acceleration; 0 where there is none. All innovations are taken at the predicted state,
     so that the blocks one after another amount to the joint update.
     """
     if dt > 0.0:
@@ -148,13 +173,9 @@ def step(
     for s in range(sensors.joint.size):
         if fresh[s]:
             update_sensor(s, P, columns, noise, update)
+    if dt > 0.0:
+        fuse_virtual(x, P, rest, NOMINAL_DT_S / dt, body, columns, options, noise, motion, update)
     n, t = x.shape[1], body.translations
-    rows = 0
-    if options.yaw_mode > 0:
-        rows = yaw_rows(P, body, columns, options, motion, noise, update)
-    rows = rest_rows(x, P, rest, rows, t, update)
-    if rows > 0:
-        update_virtual(P, rows, update)
     for j in range(n):
         for order in range(3):
             if j >= t or order == 2:

@@ -78,8 +78,8 @@ def test_equals_the_textbook(name: str) -> None:
     np.testing.assert_allclose(fast.x[:, t:], x[:, t:], atol=1e-8)
     np.testing.assert_allclose(fast.x[2, :t], x[2, :t], atol=1e-8)
     std = np.sqrt(np.diag(slow.P)).reshape(3, n)
-    np.testing.assert_allclose(fast.position_std()[t:], std[0, t:], atol=1e-8)
-    np.testing.assert_allclose(fast.velocity_std()[t:], std[1, t:], atol=1e-8)
+    np.testing.assert_allclose(fast.deviations()[0, t:], std[0, t:], atol=1e-8)
+    np.testing.assert_allclose(fast.deviations()[1, t:], std[1, t:], atol=1e-8)
 
 
 def test_follows_the_motion_it_is_shown() -> None:
@@ -160,9 +160,9 @@ def test_settling_keeps_the_pose_and_forgets_the_rest() -> None:
     ekf.settle()
     np.testing.assert_array_equal(ekf.x[0], pose)
     assert not ekf.x[1:].any()
-    np.testing.assert_allclose(ekf.position_std(), NoiseModel().start_position_std)
+    np.testing.assert_allclose(ekf.deviations()[0], NoiseModel().start_position_std)
     ekf.loosen([3])
-    assert ekf.position_std()[3] > 1.4 * NoiseModel().start_position_std
+    assert ekf.deviations()[0, 3] > 1.4 * NoiseModel().start_position_std
 
 
 def test_dynamic_rows_need_translations() -> None:
