@@ -52,7 +52,7 @@ class CheckpointKeeper:
             self.refused += 1
             return False
         with self._changed:
-            self._kept[session, service] = (head, data)
+            self._keep((session, service), head, data)
             self._unwritten[session, service] = data
             self._changed.notify_all()
         return True
@@ -61,13 +61,6 @@ class CheckpointKeeper:
         """The kept checkpoint, from disk after a start; None when there is none that can be read."""
         known = self._find(session, service)
         return known[1] if known else None
-
-    def forget(self, session: str) -> None:
-        """Free the memory of a session that is over; its files stay."""
-        self.wait()
-        with self._changed:
-            for place in [place for place in self._kept if place[0] == session]:
-                del self._kept[place]
 
     def wait(self, timeout_s: float = 5.0) -> bool:
         """Whether everything taken was written within the time."""
@@ -82,16 +75,25 @@ class CheckpointKeeper:
         self._thread.join()
 
     def _find(self, session: str, service: str) -> tuple[_Head, bytes] | None:
-        if (session, service) not in self._kept:
+        place = (session, service)
+        with self._changed:
+            if place in self._kept:
+                return self._kept[place]
             try:
                 data = self._path(session, service).read_bytes()
             except (OSError, ValueError):
                 return None
             head = _head(data)
-            if head is None:
-                return None
-            self._kept[session, service] = (head, data)
-        return self._kept[session, service]
+            return None if head is None else self._keep(place, head, data)
+
+    def _keep(self, place: Place, head: _Head, data: bytes) -> tuple[_Head, bytes]:
+        """Into memory, for the newest few hundred nodes; of the others there is the file."""
+        self._kept.pop(place, None)
+        self._kept[place] = (head, data)
+        for oldest in list(self._kept)[: -self._parameters.checkpoints_in_memory]:
+            if oldest not in self._unwritten:
+                del self._kept[oldest]
+        return self._kept[place]
 
     def _path(self, session: str, service: str) -> Path:
         return self._data_dir / folder_name(session) / f"{CHECKPOINT_PREFIX}{folder_name(service)}.json"

@@ -78,7 +78,12 @@ class LiveSession:
         if self.durable is self.reported and monotonic_s - self.reported_s < repeat_s:
             return None
         self.reported, self.reported_s = self.durable, monotonic_s
-        return Progress(service="archive", captured_ns=self.durable.captured_ns, positions=self.durable.positions)
+        return Progress(
+            service="archive",
+            captured_ns=self.durable.captured_ns,
+            positions=self.durable.positions,
+            ended=not self.missing_ends,
+        )
 
     def health(self) -> SessionHealth:
         """The session as the archive sees it."""

@@ -67,13 +67,19 @@ def load(folder: Path) -> Manifest | None:
 
 
 def rebuild(folder: Path, derived_version: str) -> Manifest:
-    """Make the manifest from the closed files. Raises NotARecording when none of them names the session."""
+    """Make the manifest from the files. Raises NotARecording when none of them names the session.
+
+    `derived_version` counts when there is no derived file, or several versions and this is one of them.
+    """
     manifest = None
     entries = []
-    for name, path in segment_files(folder):
+    files = segment_files(folder)
+    versions = {name.version for name, _ in files if name.version is not None} or {derived_version}
+    version = derived_version if derived_version in versions else min(versions)
+    for name, path in files:
         found = scan(path)
         if found.description is not None:
-            manifest = manifest or new_manifest(found.description, derived_version)
+            manifest = manifest or new_manifest(found.description, version)
             if not name.part:
                 entries.append(entry_of(found, sha256_of(path), path.stat().st_size))
     if manifest is None:

@@ -40,6 +40,8 @@ class ArchiveParameters:
     """s without a session's token after which its recording is closed as interrupted."""
     checkpoint_bytes: int = 16 * MIB
     """bytes above which a checkpoint is refused."""
+    checkpoints_in_memory: int = 600
+    """newest checkpoints kept in memory: three nodes of 200 sessions."""
 
 
 @dataclass(frozen=True)

@@ -145,7 +145,7 @@ class Recordings:
         live.writer = SessionWriter(
             live.folder,
             live.description,
-            self._version,
+            recovered.manifest.derived_version,
             ledger=recovered.ledger,
             first_number=recovered.next_number,
             parameters=self._parameters,

@@ -39,8 +39,8 @@ class Recovered:
 def recover(folder: Path, description: SessionDescription | None, derived_version: str, disk: Disk) -> Recovered | None:
     """Take stock of a session folder and remove what half-done work left; nothing that was recorded is touched.
 
-    `description` is needed only for a folder with nothing in it. Returns None when there is nothing and it is
-    None. Raises OSError when the disk fails.
+    `description` and `derived_version` are for a recording that only begins: one that goes on keeps its version,
+    so that its files belong together. Returns None when there is nothing and no description. Raises OSError.
     """
     _sweep(folder, disk)
     manifest = load(folder)
@@ -50,13 +50,12 @@ def recover(folder: Path, description: SessionDescription | None, derived_versio
         manifest = new_manifest(description, derived_version)
     if manifest is None:
         return None
-    manifest = manifest.model_copy(update={"derived_version": derived_version})
     manifest = with_unlisted(folder, manifest)
     ledger = ledger_of(manifest)
     parts = [path for name, path in segment_files(folder) if name.part]
     for part in parts:
         name = parse_file_name(part.name)
-        if name is not None and name.version in (None, derived_version):
+        if name is not None and name.version in (None, manifest.derived_version):
             ledger.absorb(scan(part).ledger.spans())
     return Recovered(folder, manifest, ledger, parts, _next_number(folder))
 

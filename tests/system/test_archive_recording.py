@@ -292,6 +292,31 @@ def test_two_sessions_and_a_session_that_never_ends(bus, settings, tmp_path):
     first.leave()
 
 
+def test_a_router_that_goes_and_comes_back_costs_nothing(settings, tmp_path):
+    router = open_router(settings)
+    with Bus.open(settings, "test") as bus, archive(settings, tmp_path):
+        patient = Patient(bus, "s1")
+        until(lambda: patient.progress or patient.walk(0.05))
+        router.close()
+        patient.walk(1.0)
+        with open_router(settings):
+            patient.walk(1.0)
+            patient.end()
+            until(patient.is_safe, 40)
+            until(lambda: is_closed(tmp_path, "s1", RecordingState.FINISHED))
+            patient.leave()
+            bus.close()
+    assert numbers(tmp_path, "s1") == everything(patient)
+
+
+def test_a_second_archive_leaves_the_folder_alone(settings, router, tmp_path):
+    with archive(settings, tmp_path) as first:
+        until((tmp_path / ".archive.lock").exists)
+        with archive(settings, tmp_path) as second:
+            assert second.wait(20) == 1
+        assert first.poll() is None
+
+
 def test_checkpoints_are_kept_across_a_restart(bus, settings, tmp_path):
     key = checkpoint_key("test", "s1", "estimation")
     checkpoint = Checkpoint(

@@ -94,10 +94,14 @@ def test_a_disk_that_refuses_costs_the_file_only(tmp_path, failing_disk):
         assert keeper.failures == 1
 
 
-def test_a_session_that_is_over_costs_no_memory(keeper):
-    keeper.take("s1", "estimation", checkpoint(1))
-    keeper.forget("s1")
-    assert keeper.newest("s1", "estimation") == checkpoint(1)
+def test_memory_is_bounded_and_the_file_remains(tmp_path):
+    keeper = CheckpointKeeper(tmp_path, Disk(), ArchiveParameters(checkpoints_in_memory=2))
+    for number in range(6):
+        keeper.take(f"s{number}", "metrics", checkpoint(number, f"s{number}", "metrics"))
+        keeper.wait()
+    assert len(keeper._kept) == 2
+    assert all(keeper.newest(f"s{n}", "metrics") == checkpoint(n, f"s{n}", "metrics") for n in range(6))
+    keeper.stop()
 
 
 def test_many_threads_may_ask_and_give(keeper):

@@ -98,6 +98,16 @@ def test_a_manifest_that_cannot_be_read_is_made_anew(recorded, tape):
     assert verify(folder) == []
 
 
+def test_a_recording_keeps_its_version_when_ambula_is_renewed(recorded, tape, description):
+    folder = recorded([*tape.walk(5), *tape.walk(5, tape.joints)])
+    for newer in ("0.2.0", "0.1.0"):
+        recovered = recover(folder, description, newer, Disk())
+        assert recovered.manifest.derived_version == VERSION
+        assert positions(recovered) == {"imu/hub": 4, "joint_state/estimation": 4}
+        (folder / "manifest.json").unlink()
+        assert recover(folder, description, newer, Disk()).manifest.derived_version == VERSION
+
+
 def test_folders_of_sessions_are_found(recorded, tape, tmp_path):
     recorded(tape.walk(3))
     (tmp_path / "other").mkdir()

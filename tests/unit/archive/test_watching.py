@@ -11,6 +11,7 @@ from schemas.session import ReferenceChannel
 from services.archive.disk import Disk
 from services.archive.ledger import Ledger
 from services.archive.live_session import LiveSession, Phase, expected_streams
+from services.archive.lock import DataFolderLock, DataFolderUnusable
 from services.archive.manifest import load, store, with_state
 from services.archive.parameters import GIB, ArchiveParameters
 from services.archive.sealer import do_job
@@ -47,6 +48,16 @@ def test_space_warns_then_stops_and_comes_back_with_room_to_spare(tmp_path, free
     space.look()
     assert (space.low, space.stopped) == (low, stopped)
     assert f"{free_gib:.1f} GiB" in space.advice
+
+
+def test_a_data_folder_has_one_archive(tmp_path):
+    with DataFolderLock(tmp_path / "data"), pytest.raises(DataFolderUnusable, match="AMBULA_DATA_DIR"):
+        DataFolderLock(tmp_path / "data")
+    with DataFolderLock(tmp_path / "data"):
+        pass
+    (tmp_path / "file").touch()
+    with pytest.raises(DataFolderUnusable, match="AMBULA_DATA_DIR"):
+        DataFolderLock(tmp_path / "file")
 
 
 def test_real_disks_tell_their_free_space(tmp_path):
