@@ -26,7 +26,7 @@ from services.gateway.sessions.models import (
 log = logging.getLogger(__name__)
 router = APIRouter(prefix="/v1/sessions", tags=["sessions"])
 
-START_SERVICES = "Start the services with `ambula up`, look at GET /v1/health, then try again."
+START_SERVICES = "Start the services with `ambula up`; the System page (GET /v1/health) shows which are missing."
 CHOOSE_SOURCE = "Choose a source from GET /v1/sources."
 
 

@@ -2,7 +2,7 @@
 import { get } from "./api.js";
 import { el, fill, say, table } from "./dom.js";
 import { clock, number, when } from "./units.js";
-import { STALE_S, STORED_WORDS, byTrouble, lastData, stateOf } from "./words.js";
+import { STALE_S, STORED_WORDS, byTrouble, lastData, nobody, stateOf } from "./words.js";
 
 const PAGE = 20;
 const COLUMNS = ["Session", "Patient", "Started", "Length#", "Strides#", "Speed#", "Cadence#", "State"];
@@ -12,13 +12,11 @@ export class FloorView {
     this.cards = new Map();
     this.offset = 0;
     this.live = el("div", { class: "cards" });
-    this.empty = el(
-      "div",
-      { class: "empty" },
-      el("h2", {}, "Nobody walks just now"),
-      el("p", {}, "Start a recorded or simulated walk, or switch on a device: it shows up here by itself."),
-      el("button", { class: "primary", type: "button", onclick: startSession }, "Start a session"),
-    );
+    const { title, advice } = nobody(true);
+    this.emptyTitle = el("h2", {}, title);
+    this.emptyAdvice = el("p", {}, advice);
+    const go = el("button", { class: "primary", type: "button", onclick: startSession }, "Start a session");
+    this.empty = el("div", { class: "empty" }, this.emptyTitle, this.emptyAdvice, go);
     this.rows = el("tbody");
     this.total = el("span", { class: "quiet" });
     this.filter = el(
@@ -96,6 +94,9 @@ export class FloorView {
     });
     entries.sort((x, y) => byTrouble(x, y) || x.session.started_unix_s - y.session.started_unix_s);
     this.empty.hidden = entries.length > 0;
+    const { title, advice } = nobody(this.status.connected);
+    say(this.emptyTitle, title);
+    say(this.emptyAdvice, advice);
     this.show(entries);
   }
 

@@ -175,6 +175,7 @@ export class LiveView {
     const stale = age_s === null || age_s > STALE_S;
     this.skeleton.setStale(stale);
     for (const chart of this.charts) chart.node.classList.toggle("stale", stale);
+    this.sensorList.classList.toggle("stale", stale);
     this.numbers.tick(stale);
   }
 

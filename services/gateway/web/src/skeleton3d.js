@@ -60,7 +60,7 @@ const JOINTS = [
 const HEAD = { above_neck_m: 0.2, radius: 0.095 };
 
 const DIRECTIONS = { side: [0, 0.07, 1], front: [1, 0.07, 0], back: [-1, 0.07, 0] };
-const LOOK_AT = new Vector3(0, 0.84, 0);
+const LOOK_AT = new Vector3(0, 0.8, 0);
 const VIEW_ANGLE_DEG = 30;
 const SHOWN_HEIGHT_M = 1.86;
 const SHOWN_WIDTH_M = 1.3;

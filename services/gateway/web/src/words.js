@@ -119,6 +119,20 @@ export const STORED_WORDS = {
   failed: { word: "Not started", tone: "lost" },
 };
 
+/** What stands where the cards would be. */
+export function nobody(connected) {
+  if (connected) {
+    return {
+      title: "Nobody walks just now",
+      advice: "Start a recorded or simulated walk, or switch on a device: it shows up here by itself.",
+    };
+  }
+  return {
+    title: "No live data",
+    advice: "The services behind the gateway are not heard. What they run shows up here as soon as they are back.",
+  };
+}
+
 /** What the header says about the line to the gateway and to the services behind it. */
 export function connectionOf(socketOpen, status) {
   if (!socketOpen) return { word: "Connection lost – trying again", tone: "lost" };
