@@ -202,6 +202,11 @@ class Bus:
         """Be visible under `key` for as long as this process is connected."""
         return self._keep(self._session.liveliness().declare_token(key).undeclare)
 
+    def tokens(self, key: str, timeout_s: float = 1.0) -> list[str]:
+        """Keys of the tokens that are held now."""
+        replies = self._session.liveliness().get(key, timeout=timeout_s)
+        return [str(reply.ok.key_expr) for reply in replies if reply.ok is not None]
+
     def watch_tokens(self, key: str, callback: Callable[[str, bool], None]) -> Handle:
         """callback(key, alive) for every token that is there, comes or goes."""
 

@@ -187,7 +187,12 @@ class NodeSession:
             return
         far = self._told is None or self.host.captured_ns - self._told.captured_ns >= PROGRESS_STEP_NS
         if far or self.host.ended or now - self._told_at >= 1.0:
-            progress = Progress(service=self.host.service, captured_ns=self.host.captured_ns, positions=positions)
+            progress = Progress(
+                service=self.host.service,
+                captured_ns=self.host.captured_ns,
+                positions=positions,
+                ended=self.host.ended,
+            )
             key = progress_key(self._bus.settings.site, self.host.session, self.host.service)
             self._bus.put(key, progress.model_dump_json().encode())
             self._told, self._told_at = progress, now

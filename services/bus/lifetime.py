@@ -1,9 +1,9 @@
 """When a process has to end: told by a signal, or left alone by the supervisor that started it."""
 
 import os
+import queue
 import signal
 import threading
-import time
 from collections.abc import Callable
 from types import FrameType
 
@@ -13,16 +13,28 @@ LOOK_S = 0.5
 
 
 def call_on_stop(action: Callable[[], None]) -> None:
-    """Call `action` (quick, safe in a signal handler) on SIGTERM, SIGINT and the supervisor's end."""
+    """Call `action` once, on a thread of its own, at SIGTERM, SIGINT or the supervisor's end.
+
+    A signal handler interrupts the main thread anywhere, even while it holds the lock that the action needs; so
+    the handler only puts into a queue that allows for that.
+    """
+    told: queue.SimpleQueue[None] = queue.SimpleQueue()
 
     def handle(_number: int, _frame: FrameType | None) -> None:
+        told.put(None)
+
+    def wait() -> None:
+        while not _is_orphan():
+            try:
+                told.get(timeout=LOOK_S)
+                break
+            except queue.Empty:
+                continue
         action()
 
     signal.signal(signal.SIGTERM, handle)
     signal.signal(signal.SIGINT, handle)
-    supervisor = os.environ.get(SUPERVISOR_VARIABLE)
-    if supervisor is not None:
-        threading.Thread(target=_watch, args=(int(supervisor),), name="lifetime", daemon=True).start()
+    threading.Thread(target=wait, name="lifetime", daemon=True).start()
 
 
 def stop_event() -> threading.Event:
@@ -32,8 +44,7 @@ def stop_event() -> threading.Event:
     return stop
 
 
-def _watch(supervisor: int) -> None:
+def _is_orphan() -> bool:
     """A child whose parent died has another parent."""
-    while os.getppid() == supervisor:
-        time.sleep(LOOK_S)
-    os.kill(os.getpid(), signal.SIGTERM)
+    supervisor = os.environ.get(SUPERVISOR_VARIABLE)
+    return supervisor is not None and os.getppid() != int(supervisor)

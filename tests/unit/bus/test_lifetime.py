@@ -19,22 +19,26 @@ print("stopped" if stop.is_set() else "timed out", flush=True)
 
 
 def start(environment: dict[str, str] | None = None) -> subprocess.Popen[str]:
-    process = subprocess.Popen(
+    return subprocess.Popen(
         [sys.executable, "-c", WAITING], env={**os.environ, **(environment or {})}, stdout=subprocess.PIPE, text=True
     )
-    assert process.stdout is not None
-    assert process.stdout.readline() == "up\n"
-    return process
+
+
+def ending(process: subprocess.Popen[str]) -> str:
+    """The rest of what the process says, once it has ended by itself."""
+    out, _ = process.communicate(timeout=10)
+    assert process.returncode == 0
+    return out
 
 
 @pytest.mark.parametrize("number", [signal.SIGTERM, signal.SIGINT])
 def test_a_signal_sets_the_event(number):
     process = start()
+    assert process.stdout is not None
+    assert process.stdout.readline() == "up\n"
     process.send_signal(number)
-    assert process.communicate(timeout=10) == ("stopped\n", None)
-    assert process.returncode == 0
+    assert ending(process) == "stopped\n"
 
 
 def test_a_child_without_its_supervisor_ends():
-    process = start({SUPERVISOR_VARIABLE: "1"})
-    assert process.communicate(timeout=10) == ("stopped\n", None)
+    assert ending(start({SUPERVISOR_VARIABLE: "1"})) == "up\nstopped\n"
