@@ -84,3 +84,4 @@ class Progress(Payload):
     service: str
     captured_ns: SessionTime
     positions: dict[str, int] = Field(description="signal/source -> last sequence number done")
+    ended: bool = Field(description="all streams of the session that it waits for have ended, and all is done")

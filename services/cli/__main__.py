@@ -49,7 +49,7 @@ def replay(
     from services.bus.settings import BusSettings
     from services.cli import live, show
 
-    with told(BusUnavailable, live.NotStarted, ValueError), Bus.open(BusSettings(), "replay") as bus:
+    with told(BusUnavailable, live.NotStarted, live.WentSilent, ValueError), Bus.open(BusSettings(), "replay") as bus:
         pace = None if speed == "max" else _positive(speed)
         description = live.start_session(bus, _absolute(path), pace, estimator)
         err.print(f"session {description.session}: {description.title}")

@@ -9,11 +9,20 @@ from schemas.health import Progress
 from schemas.metrics import SessionMetrics
 from schemas.session import SessionDescription
 from schemas.signals import METRICS, command_key, progress_key, stream_key
-from services.bus.connection import Bus, Received
+from services.bus.connection import Bus
+from services.bus.received import Received
+
+
+SILENCE_S = 60.0
+"""s. A service that crashed is back well before; a session without any news for so long is not coming to its end."""
 
 
 class NotStarted(RuntimeError):
     """Ingest refused a session, or no ingest answers."""
+
+
+class WentSilent(RuntimeError):
+    """A session makes no more progress."""
 
 
 def start_session(bus: Bus, spec: str, speed: float | None, estimator: str | None) -> SessionDescription:
@@ -32,7 +41,10 @@ def start_session(bus: Bus, spec: str, speed: float | None, estimator: str | Non
 
 
 def follow(bus: Bus, description: SessionDescription) -> Iterator[float | SessionMetrics]:
-    """Seconds of the session done so far, again and again, and last its final metrics."""
+    """Seconds of the session done so far, again and again, and last its final metrics.
+
+    Raises WentSilent when no service says anything about the session for a minute.
+    """
     arrived: queue.SimpleQueue[Received] = queue.SimpleQueue()
     site, session = bus.settings.site, description.session
     handles = [
@@ -42,7 +54,10 @@ def follow(bus: Bus, description: SessionDescription) -> Iterator[float | Sessio
     ]
     try:
         while True:
-            received = arrived.get()
+            try:
+                received = arrived.get(timeout=SILENCE_S)
+            except queue.Empty:
+                raise WentSilent(f"no news of session {session} for {SILENCE_S:.0f} s; see `ambula doctor`") from None
             if f"/{METRICS.name}/" in received.key and received.payload:
                 metrics = SessionMetrics.model_validate_json(received.payload)
                 if metrics.final:

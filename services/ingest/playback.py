@@ -12,7 +12,6 @@ from schemas.signals import session_token_key
 from services.bus.connection import Bus
 from services.bus.logs import event
 from services.bus.publisher import StreamPublisher
-from services.flow.message import Stream
 from services.ingest.batching import Batcher, BatchGovernor
 from services.ingest.driver import Source, SourceMessage, streams_of
 from services.ingest.orders import StartOrder

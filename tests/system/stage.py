@@ -131,7 +131,7 @@ class Keeper:
 
     def tell_progress(self, session: str, positions: Mapping[str, int]) -> None:
         """Say how far the archive is."""
-        progress = Progress(service="archive", captured_ns=0, positions=dict(positions))
+        progress = Progress(service="archive", captured_ns=0, positions=dict(positions), ended=False)
         self.bus.put(progress_key(self.bus.settings.site, session, "archive"), progress.model_dump_json().encode())
 
     def close(self) -> None:

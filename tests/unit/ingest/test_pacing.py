@@ -70,17 +70,6 @@ def test_a_reader_may_speak_before_anything_was_sent():
     assert readers.slowest_ns(0.2) == 0
 
 
-def test_the_archive_has_everything_only_with_every_end():
-    readers = sent_readers()
-    readers.sent("reference/reference", 0, 0)
-    last = {"imu/hub": 1000, "reference/reference": 1}
-    readers.report("archive", {"imu/hub": 1000, "reference/reference": 0}, 0.0)
-    assert not readers.has_everything("archive", last)
-    readers.report("archive", {"imu/hub": 1000, "reference/reference": 1}, 0.0)
-    assert readers.has_everything("archive", last)
-    assert not readers.has_everything("estimation", last)
-
-
 def test_what_everybody_has_is_forgotten():
     readers = sent_readers()
     readers.report("archive", {"imu/hub": 600}, 0.0)
