@@ -166,6 +166,17 @@ def test_a_record_longer_than_the_file_is_not_allocated(recorded, tape):
     assert found.messages == 4
 
 
+@pytest.mark.parametrize("opcode", [0x00, Opcode.HEADER, Opcode.FOOTER, Opcode.MESSAGE, Opcode.MESSAGE_INDEX, 0x99])
+def test_a_record_that_does_not_belong_there_is_damage(recorded, tape, opcode):
+    """Were it skipped, a chunk whose kind was altered would be a hole that nobody notices."""
+    folder = recorded(tape.walk(3), closed=False)
+    with (folder / OPEN).open("ab") as file:
+        file.write(struct.pack("<BQ", opcode, 22) + bytes(22))
+    found = scan(folder / OPEN)
+    assert found.damage.kind is DamageKind.CORRUPT
+    assert found.messages == 4
+
+
 def test_a_repeated_chunk_is_noticed(recorded, tape):
     """Each chunk is right in itself; the sequence numbers tell."""
     folder = recorded(tape.walk(20), every=10, closed=False)
