@@ -120,7 +120,7 @@ class History:
             "position": pack_array(np.array([row for batch in batches for row in batch.position]).reshape(-1, DOFS)),
             "phase": pack_array(np.array([value for batch in batches for value in batch.phase])),
             "position_std": pack_array(np.array([batch.position_std for batch in batches]).reshape(-1, DOFS)),
-            "valid": [[bool(value) for value in batch.valid] for batch in batches],
+            "valid": ["".join("1" if value else "0" for value in batch.valid) for batch in batches],
         }
 
     def restore(self, state: State) -> None:
@@ -134,6 +134,6 @@ class History:
             np.split(unpack_array(state["position"]), cuts),
             np.split(unpack_array(state["phase"]), cuts),
             unpack_array(state["position_std"]),
-            np.array(state["valid"], dtype=bool),
+            np.array([[digit == "1" for digit in digits] for digits in state["valid"]]),
         )
         self._batches = [Batch(*row) for row in zip(*columns, strict=True)]

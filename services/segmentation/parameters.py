@@ -73,5 +73,5 @@ class SegmentationParameters:
     foot_roll_share: float = 0.08
     """radius on which the foot rolls in stance / leg length: how far the ankle travels per radian of shank
     rotation between its own contact and the other foot's. Optical means of three people: 0.09, 0.06, 0.08."""
-    history_margin_s: float = 1.0
-    """s of joint angles kept before the last contact."""
+    history_margin_s: float = 0.5
+    """s of joint angles kept before the last contact; a contact is recognised at most 0.35 s late."""
