@@ -8,9 +8,9 @@ class SegmentationParameters:
     """Contacts are times at which the ankle turns round relative to the pelvis, plus a constant (Zeni 2008).
 
     The constants rest on two force plates (46 contacts and 46 toe-offs of two healthy adults, slow to fast and with
-    an altered gait: 43 and 42 ms, standard deviation 11 and 16 ms) and on the reviewed events of two other people
-    (14 and 18 events: 36 and 27 ms, standard deviation 11 and 9 ms). The deviations below are wider because the
-    joint angles of a session are estimates.
+    an altered gait: 43 and 42 ms, standard deviation 12 and 16 ms) and on the reviewed events of two other people
+    (16 contacts and 15 toe-offs: 35 and 26 ms, standard deviation 11 and 8 ms). The deviations below are wider,
+    because the joint angles of a session are estimates.
     """
 
     contact_after_foremost_s: float = 0.04
@@ -72,6 +72,6 @@ class SegmentationParameters:
 
     foot_roll_share: float = 0.08
     """radius on which the foot rolls in stance / leg length: how far the ankle travels per radian of shank
-    rotation between its own contact and the other foot's. Optical means of three people: 0.09, 0.06, 0.08."""
+    rotation between its own contact and the other foot's. Optical means of three people: 0.10, 0.06, 0.08."""
     history_margin_s: float = 0.5
     """s of joint angles kept before the last contact; a contact is recognised at most 0.35 s late."""
