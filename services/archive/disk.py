@@ -21,11 +21,6 @@ class Disk:
         """Wait until the file's bytes are on the disk."""
         os.fsync(descriptor)
 
-    def truncate(self, descriptor: int, size: int) -> None:
-        """Cut the file to `size` bytes and go on writing there."""
-        os.ftruncate(descriptor, size)
-        os.lseek(descriptor, size, os.SEEK_SET)
-
     def close(self, descriptor: int) -> None:
         """Give the descriptor back."""
         os.close(descriptor)

@@ -88,7 +88,6 @@ class Journal:
         self._builder = RecordBuilder()
         self._compressor = zstandard.ZstdCompressor()
         self._from_ns, self._to_ns, self._messages = LOG_TIME_LIMIT, 0, 0
-        self._size = 0
         self._unsynced = False
         self._descriptor = disk.create(path)
         try:
@@ -156,13 +155,8 @@ class Journal:
         return bytes(head.end())
 
     def _append(self, data: bytes) -> None:
-        """Leave no half record behind: a failed write is cut off again, as far as the disk allows."""
-        try:
-            self._disk.write(self._descriptor, data)
-        except OSError:
-            self._disk.truncate(self._descriptor, self._size)
-            raise
-        self._size += len(data)
+        """A write that fails may leave half a record behind, which recovery drops."""
+        self._disk.write(self._descriptor, data)
         self._unsynced = True
 
     def _times(self, envelope: Envelope, received_unix_ns: int) -> tuple[int, int, int]:

@@ -69,7 +69,7 @@ def walk(count, stream=HUB, first=0):
 class FailingDisk(Disk):
     """Raises OSError at the n-th call that changes the disk (and at all later ones, if `forever`)."""
 
-    CHANGING = ("create", "write", "sync", "truncate", "replace", "remove", "sync_folder")
+    CHANGING = ("create", "write", "sync", "replace", "remove", "sync_folder")
 
     def __init__(self, fail_at, number=errno.EIO, forever=False):
         self.fail_at = fail_at

@@ -88,6 +88,19 @@ def test_an_empty_open_file_is_no_obstacle(tmp_path, description, tape):
     assert streams(folder) == {"imu/hub": tape.walk(3)}
 
 
+def test_a_file_that_was_closed_already_is_not_closed_again(recorded, tape):
+    """Killed after the rename and before the open file was removed."""
+    folder = recorded(tape.walk(20), closed=False)
+    part = (folder / "raw.mcap.part").read_bytes()
+    recorded(tape.walk(20), folder=folder.parent / "twin")
+    (folder.parent / "twin" / "raw.mcap").rename(folder / "raw.mcap")
+    (folder / "raw.mcap.sealing").write_bytes(part[:100])
+    recovered = recover(folder, None, VERSION, Disk())
+    assert recovered.parts == []
+    assert sorted(path.name for path in folder.iterdir()) == ["manifest.json", "raw.mcap"]
+    assert positions(recovered) == {"imu/hub": 19}
+
+
 def test_a_manifest_that_cannot_be_read_is_made_anew(recorded, tape):
     folder = recorded([*tape.walk(30), tape.record(tape.hub, 30, final=True)])
     before = load(folder)
