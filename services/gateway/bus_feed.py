@@ -6,10 +6,10 @@ from dataclasses import dataclass
 from functools import partial
 
 from schemas.gait import GaitEvent, Stride
-from schemas.health import Health
+from schemas.health import Health, Progress
 from schemas.metrics import SessionMetrics
 from schemas.session import SessionDescription
-from schemas.signals import GAIT_EVENT, LIVE_POSE, METRICS, STRIDE, health_key, stream_key
+from schemas.signals import GAIT_EVENT, LIVE_POSE, METRICS, STRIDE, health_key, progress_key, stream_key
 from services.bus.connection import Bus
 from services.bus.health import HealthReporter
 from services.bus.logs import event
@@ -74,6 +74,7 @@ class BusFeed:
         site = bus.settings.site
         bus.subscribe(stream_key(site, "*", LIVE_POSE, "*"), self._take_pose)
         loop.subscribe(health_key(site, "*", "*"), self._take_health)
+        loop.subscribe(progress_key(site, "*", "*"), self._take_progress)
         watch = SessionWatch(
             bus,
             on_session=lambda description: loop.post(partial(self._appeared, description)),
@@ -94,6 +95,10 @@ class BusFeed:
 
     def _take_health(self, received: Received) -> None:
         self._live.health.record(Health.model_validate_json(received.payload))
+
+    def _take_progress(self, received: Received) -> None:
+        progress = Progress.model_validate_json(received.payload)
+        self._keeper.progressed(received.key.rsplit("/", 2)[1], progress.captured_ns / 1e9)
 
     def _appeared(self, description: SessionDescription) -> None:
         assert self._loop is not None

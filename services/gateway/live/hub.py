@@ -88,12 +88,6 @@ class LiveHub:
         """A session is over: viewers are told its state, then let go."""
         self._on_loop(lambda: self._close(session, state))
 
-    def reached_s(self, session: str) -> float:
-        """Session time of the newest skeleton, s; 0 when there is none. From any thread."""
-        newest = self._newest(session)
-        pose = None if newest is None else self._decode(session, newest)
-        return 0.0 if pose is None else views.seconds(pose.captured_ns)
-
     # Asked by routes, on the event loop.
 
     def bind(self, loop: asyncio.AbstractEventLoop) -> None:

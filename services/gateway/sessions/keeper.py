@@ -31,6 +31,8 @@ class SessionKeeper:
     parameters: GatewayParameters = field(default_factory=GatewayParameters)
     clock: Callable[[], float] = time.monotonic
     running: set[str] = field(default_factory=set)
+    _finished: set[str] = field(default_factory=set)
+    _reached_s: dict[str, float] = field(default_factory=dict)
     _gone_since: dict[str, float] = field(default_factory=dict)
     _unwritten: dict[tuple[str, str], Callable[[], None]] = field(default_factory=dict)
 
@@ -50,29 +52,34 @@ class SessionKeeper:
     def measured(self, session: str, metrics: SessionMetrics) -> None:
         """Metrics came; final ones are the end of the session."""
         self.live.tell(session, views.metrics_view(metrics))
-        reached_s = self.live.reached_s(session) if metrics.final else 0.0
-        self._write((session, "metrics"), partial(self._record_metrics, session, metrics, reached_s))
+        self._write((session, "metrics"), partial(self._record_metrics, session, metrics))
         if metrics.final:
-            self._gone_since.pop(session, None)
+            self._finished.add(session)
             self.live.close(session, SessionState.FINISHED)
+
+    def progressed(self, session: str, captured_s: float) -> None:
+        """A service has come so far with the session."""
+        if session in self.running:
+            self._reached_s[session] = max(captured_s, self._reached_s.get(session, 0.0))
 
     def gone(self, session: str) -> None:
         """The ingest let go of the session; its final metrics may still be on their way."""
         self.running.discard(session)
         self._gone_since[session] = self.clock()
 
-    def missing(self) -> list[str]:
-        """Sessions that are gone and whose final metrics have not come."""
-        return list(self._gone_since)
-
     def settle(self) -> None:
         """Now and then: try again what could not be written, close what has been gone for too long."""
         waiting, self._unwritten = self._unwritten, {}
         for key, write in waiting.items():
             self._write(key, write)
+        for session in list(self._finished & self._reached_s.keys()):
+            length_s = self._reached_s.pop(session)
+            self._write((session, "length"), partial(self._record_length, session, length_s))
         limit = self.clock() - self.parameters.final_metrics_grace_s
         for session in [name for name, since in self._gone_since.items() if since <= limit]:
             del self._gone_since[session]
+            self._reached_s.pop(session, None)
+            self._finished.discard(session)
             self._write((session, "end"), partial(self._record_end, session))
             self.live.close(session, SessionState.INTERRUPTED)
 
@@ -82,9 +89,13 @@ class SessionKeeper:
             patient = row.patient_code
         self.live.assign(description.session, patient)
 
-    def _record_metrics(self, session: str, metrics: SessionMetrics, reached_s: float) -> None:
+    def _record_metrics(self, session: str, metrics: SessionMetrics) -> None:
         with self.database.transaction() as database:
-            records.record_metrics(database, session, metrics, reached_s)
+            records.record_metrics(database, session, metrics)
+
+    def _record_length(self, session: str, length_s: float) -> None:
+        with self.database.transaction() as database:
+            records.record_length(database, session, length_s)
 
     def _record_end(self, session: str) -> None:
         with self.database.transaction() as database:

@@ -61,11 +61,8 @@ def record_start(database: Session, description: SessionDescription) -> SessionR
     return row
 
 
-def record_metrics(database: Session, session: str, metrics: SessionMetrics, reached_s: float) -> bool:
-    """Keep a session's newest metrics; final ones finish it. False when the session is not known.
-
-    `reached_s`: session time that was seen; metrics end with the last stride, the session may have gone on.
-    """
+def record_metrics(database: Session, session: str, metrics: SessionMetrics) -> bool:
+    """Keep a session's newest metrics; final ones finish it. False when the session is not known."""
     row = database.get(SessionRow, session)
     if row is None:
         return False
@@ -79,9 +76,20 @@ def record_metrics(database: Session, session: str, metrics: SessionMetrics, rea
         database.merge(stored)
     if metrics.final:
         row.state, row.reason = SessionState.FINISHED, None
-        row.duration_s = max(reached_s, metrics.captured_ns / 1e9)
-        row.ended = (row.started or row.created) + timedelta(seconds=row.duration_s)
+        _set_length(row, metrics.captured_ns / 1e9)
     return True
+
+
+def record_length(database: Session, session: str, length_s: float) -> None:
+    """A finished session went on after its last stride, to which its metrics reach."""
+    row = database.get(SessionRow, session)
+    if row is not None and row.state == SessionState.FINISHED and length_s > (row.duration_s or 0.0):
+        _set_length(row, length_s)
+
+
+def _set_length(row: SessionRow, length_s: float) -> None:
+    row.duration_s = length_s
+    row.ended = (row.started or row.created) + timedelta(seconds=length_s)
 
 
 def record_end(database: Session, session: str, state: SessionState, reason: str) -> bool:

@@ -36,7 +36,7 @@ def test_migrating_again_keeps_the_data(database, made):
         add_patient(session, 1957)
         records.record_start(session, made.describe("a"))
         session.flush()
-        records.record_metrics(session, "a", made.metrics_at(5.0, final=True), reached_s=6.0)
+        records.record_metrics(session, "a", made.metrics_at(5.0, final=True))
     database.migrate()
     with database.transaction() as session:
         assert records.get_session(session, "a").metrics.final

@@ -51,14 +51,18 @@ def test_final_metrics_finish_a_session(keeper, made):
     assert not keeper.live.is_live("a")
 
 
-def test_a_session_is_as_long_as_what_was_seen_of_it_not_as_its_last_stride(keeper, made):
+def test_a_session_is_as_long_as_the_services_came_not_as_its_last_stride(keeper, made):
     keeper.appeared(made.describe("a"))
-    keeper.live.pose("a", made.pose_at(24.5).model_dump_json().encode())
+    keeper.progressed("a", 24.5)
+    keeper.progressed("a", 20.1)
     keeper.measured("a", made.metrics_at(20.0, final=True))
+    keeper.settle()
+    keeper.progressed("a", 25.0)
+    keeper.settle()
     with keeper.database.transaction() as database:
         row = records.get_session(database, "a")
-        assert row.duration_s == 24.5
-        assert (row.ended - row.started).total_seconds() == pytest.approx(24.5)
+        assert (row.state, row.duration_s) == ("finished", 25.0)
+        assert (row.ended - row.started).total_seconds() == pytest.approx(25.0)
 
 
 def test_later_metrics_do_not_replace_final_ones(keeper, made):

@@ -165,7 +165,7 @@ class Card {
     say(this.elapsed, clock(session.elapsed_s));
     say(this.cadence, session.cadence_per_min === null ? "–" : `${number(session.cadence_per_min, 0)} /min`);
     say(this.strides, String(session.strides));
-    say(this.advice, session.message ?? "");
+    say(this.advice, session.phase === "estimating" ? session.message : "");
     say(this.age, lastData(age_s));
     this.node.classList.toggle("stale", age_s !== null && age_s > STALE_S);
   }

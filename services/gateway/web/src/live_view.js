@@ -122,11 +122,12 @@ export class LiveView {
     },
     pose(pose) {
       this.phase = pose.phase;
+      this.message = pose.message;
       this.sensors = pose.sensors;
       this.heard(pose.age_s);
       say(this.elapsed, clock(pose.at_s));
       say(this.advice, pose.message);
-      this.advice.hidden = pose.message === "";
+      this.advice.hidden = pose.message === "" || pose.phase !== "estimating";
       const figure = this.body && figureOf(pose, this.body);
       if (figure) this.skeleton.show(figure);
       for (const chart of this.charts) chart.add(pose, pose.trail);
@@ -164,6 +165,7 @@ export class LiveView {
     const { word, tone } = stateOf({
       age_s,
       phase: this.phase,
+      message: this.message,
       sensors: this.sensors,
       segments: this.segments,
       silent,

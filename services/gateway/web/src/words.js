@@ -67,7 +67,7 @@ export const STALE_S = 1;
 
 /**
  * The one word for a running session, worst thing first.
- * @param {{age_s: number|null, phase: string|null, sensors: {sensor: string, state: string}[],
+ * @param {{age_s: number|null, phase: string|null, message: string|null, sensors: {sensor: string, state: string}[],
  *   segments: Record<string, string>, silent: string[], heard: boolean}} now
  * @returns {{word: string, tone: "lost"|"check"|"wait"|"good", light: string}}
  */
@@ -76,7 +76,11 @@ export function stateOf(now) {
   return { word, tone, light: { lost: "Lost", check: "Check sensor", wait: "Wait", good: "Good" }[tone] };
 }
 
-function judge({ age_s, phase, sensors, segments, silent, heard }) {
+function calibratingStep(message) {
+  return message ? message.charAt(0).toLowerCase() + message.slice(1) : "stand still";
+}
+
+function judge({ age_s, phase, message, sensors, segments, silent, heard }) {
   const estimating = !silent.includes("estimation");
   if (age_s !== null && age_s > STALE_S) {
     if (heard && !estimating && !silent.includes("archive")) {
@@ -96,8 +100,7 @@ function judge({ age_s, phase, sensors, segments, silent, heard }) {
       word: `Check ${segmentName(segments[doubtful.sensor] ?? doubtful.sensor).toLowerCase()} sensor`,
       tone: "check",
     };
-  if (phase === "waiting") return { word: "No data yet", tone: "wait" };
-  if (phase === "calibrating") return { word: "Calibrating - stand still", tone: "wait" };
+  if (phase !== "estimating") return { word: `Calibrating - ${calibratingStep(message)}`, tone: "wait" };
   return { word: "Live", tone: "good" };
 }
 
