@@ -23,8 +23,10 @@ from services.flow.ring import Question, RingExtent
 CHECKPOINT_S = 1.0
 PROGRESS_STEP_NS = 1_000_000_000
 """Progress is told each tick (0.1 s) in which this much captured time was done, and else each second."""
+REPEAT_S = 5.0
+"""Progress is told again when nothing changes, for those who came later or lost it."""
 LINGER_S = 60.0
-"""Rings stay this long after the end when no archive says that it has everything."""
+"""Rings stay this long after the end, and after the last step of any reader, when no archive says it has all."""
 PATIENCE_S = 5.0
 """For a checkpoint, when the rings no longer have the beginning."""
 
@@ -95,6 +97,8 @@ class NodeSession:
         self._held = HeldCheckpoints()
         self._final: Checkpoint | None = None
         self._ended_at: float | None = None
+        self._stepped_at = 0.0
+        self._archived = False
         self._frozen_at = time.monotonic()
         self._frozen_inputs = dict(host.inputs)
         self._told_at = 0.0
@@ -129,15 +133,21 @@ class NodeSession:
         return self._held.empty
 
     def is_over(self, now: float) -> bool:
-        """The outputs are closed and safe in the archive, or nobody has come for them in a minute."""
-        if self._ended_at is None or self._final is None:
+        """The whole session is safe in the archive, or nobody has made a step with it in a minute.
+
+        The own outputs being safe is not enough: a reader that crashes after the end comes back for them.
+        """
+        if self._ended_at is None:
             return False
-        return self._held.covered(self._final, ARCHIVE) or now - self._ended_at >= LINGER_S
+        return self._archived or now - max(self._ended_at, self._stepped_at) >= LINGER_S
 
     def note_progress(self, reader: str, progress: Progress) -> None:
         """Another service said how far it is with this session."""
-        if reader != self.host.service:
-            self._held.progress(reader, progress.positions)
+        if reader == self.host.service:
+            return
+        if self._held.progress(reader, progress.positions):
+            self._stepped_at = time.monotonic()
+        self._archived |= reader == ARCHIVE and progress.ended
 
     def health(self) -> SessionHealth:
         """Counts of the inputs and what was not used."""
@@ -182,17 +192,19 @@ class NodeSession:
             self._publishers[message.stream].forward(message)
 
     def _tell_progress(self, now: float) -> None:
-        positions = {stream.name: position.sequence for stream, position in self.host.inputs.items()}
-        if self._told is not None and positions == self._told.positions:
-            return
-        far = self._told is None or self.host.captured_ns - self._told.captured_ns >= PROGRESS_STEP_NS
-        if far or self.host.ended or now - self._told_at >= 1.0:
-            progress = Progress(
-                service=self.host.service,
-                captured_ns=self.host.captured_ns,
-                positions=positions,
-                ended=self.host.ended,
-            )
+        progress = Progress(
+            service=self.host.service,
+            captured_ns=self.host.captured_ns,
+            positions={
+                stream.name: self.host.inputs[stream].sequence if stream in self.host.inputs else -1
+                for stream in self.host.node.streams
+            },
+            ended=self.host.ended,
+        )
+        waited = now - self._told_at
+        far = self._told is None or progress.captured_ns - self._told.captured_ns >= PROGRESS_STEP_NS
+        news = progress != self._told and (far or progress.ended or waited >= 1.0)
+        if news or waited >= REPEAT_S:
             key = progress_key(self._bus.settings.site, self.host.session, self.host.service)
             self._bus.put(key, progress.model_dump_json().encode())
             self._told, self._told_at = progress, now

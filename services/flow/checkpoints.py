@@ -32,9 +32,11 @@ class HeldCheckpoints:
         """Hold a checkpoint that was taken now."""
         self._held.append((now, checkpoint))
 
-    def progress(self, reader: str, positions: Mapping[str, int]) -> None:
-        """A reader said how far it is."""
+    def progress(self, reader: str, positions: Mapping[str, int]) -> bool:
+        """A reader said how far it is; whether that is news."""
+        before = self._readers.get(reader)
         self._readers[reader] = dict(positions)
+        return self._readers[reader] != before
 
     def release(self, now: float) -> Checkpoint | None:
         """The newest checkpoint that may be put away; the older ones are forgotten."""
@@ -43,11 +45,9 @@ class HeldCheckpoints:
             newest = self._held.popleft()[1]
         return newest
 
-    def covered(self, checkpoint: Checkpoint, reader: str) -> bool:
+    def _has(self, reader: str, checkpoint: Checkpoint) -> bool:
         """The reader has everything that was sent before the checkpoint."""
-        positions = self._readers.get(reader)
-        if positions is None:
-            return False
+        positions = self._readers[reader]
         return all(
             positions.get(name, -1) >= position.sequence
             for name, position in checkpoint.outputs.items()
@@ -56,7 +56,7 @@ class HeldCheckpoints:
 
     def _may_go(self, now: float, taken_at: float, checkpoint: Checkpoint) -> bool:
         waited = now - taken_at >= LONGEST_WAIT_S
-        return waited or all(self.covered(checkpoint, reader) for reader in self._readers)
+        return waited or all(self._has(reader, checkpoint) for reader in self._readers)
 
 
 def _is_archived(reader: str, stream: str) -> bool:

@@ -129,9 +129,9 @@ class Keeper:
         self.bus.subscribe(key, self._keep)
         self.bus.serve(key, self._answer)
 
-    def tell_progress(self, session: str, positions: Mapping[str, int]) -> None:
-        """Say how far the archive is."""
-        progress = Progress(service="archive", captured_ns=0, positions=dict(positions), ended=False)
+    def tell_progress(self, session: str, positions: Mapping[str, int], *, ended: bool = False) -> None:
+        """Say how far the archive is; `ended`: it has the whole session."""
+        progress = Progress(service="archive", captured_ns=0, positions=dict(positions), ended=ended)
         self.bus.put(progress_key(self.bus.settings.site, session, "archive"), progress.model_dump_json().encode())
 
     def close(self) -> None:

@@ -213,18 +213,20 @@ def test_a_token_without_a_description_is_counted_until_there_is_one(
     wait_until(collector.ended)
 
 
-def test_it_lingers_until_the_archive_has_the_end(settings: BusSettings, processes: Processes, closing: Closing):
+def test_it_lingers_until_the_archive_has_the_whole_session(
+    settings: BusSettings, processes: Processes, closing: Closing
+):
     keeper, ingest = closing(Keeper(settings)), closing(FakeIngest(settings, "s"))
     processes.start(SERVICE)
     ingest.send(20)
     ingest.end()
     wait_until(lambda: "event=session_ended" in processes.log())
-    keeper.tell_progress("s", {"gait_event/estimation": 20})
+    keeper.tell_progress("s", {"gait_event/estimation": 21})
     late = closing(Collector(settings))
     late.receive("s", SUMS)
     wait_until(late.ended)
     assert "event=session_closed" not in processes.log()
-    keeper.tell_progress("s", {"gait_event/estimation": 21})
+    keeper.tell_progress("s", {"gait_event/estimation": 21}, ended=True)
     wait_until(lambda: "event=session_closed" in processes.log())
     wait_until(lambda: keeper.history and keeper.history[-1].outputs["gait_event/estimation"].ended)
 
