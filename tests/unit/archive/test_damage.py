@@ -177,6 +177,22 @@ def test_a_record_that_does_not_belong_there_is_damage(recorded, tape, opcode):
     assert found.messages == 4
 
 
+def test_a_chunk_counts_as_a_whole_or_not_at_all(recorded, tape):
+    """Of a chunk that does not follow on, nothing may be taken as held: it would never be asked for again."""
+    other = tape.hub._replace(source="other")
+    first = [*tape.walk(5), *tape.walk(5, other)]
+    third = [tape.record(other, 5), *tape.walk(9, first=15)]
+    folder = recorded([*first, *tape.walk(10, first=5), *third], every=10, closed=False)
+    with (folder / OPEN).open("rb") as file:
+        chunks = [frame for frame in read_frames(file) if frame.opcode == Opcode.CHUNK]
+    data = (folder / OPEN).read_bytes()
+    (folder / OPEN).write_bytes(data[: chunks[1].offset - 9] + data[chunks[2].offset - 9 :])
+    found = scan(folder / OPEN)
+    assert found.damage.kind is DamageKind.CORRUPT
+    assert {name: place.sequence for name, place in found.ledger.positions().items()} == {"imu/hub": 4, "imu/other": 4}
+    assert read(folder / OPEN)[0] == sorted(first, key=lambda record: record.envelope.captured_ns)
+
+
 def test_a_repeated_chunk_is_noticed(recorded, tape):
     """Each chunk is right in itself; the sequence numbers tell."""
     folder = recorded(tape.walk(20), every=10, closed=False)
