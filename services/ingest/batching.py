@@ -64,17 +64,15 @@ def joined(first: SourceMessage, second: SourceMessage) -> SourceMessage:
     match first.payload, second.payload:
         case ImuBatch() as a, ImuBatch() as b:
             sensors = [_joined_samples(x, y) for x, y in zip(a.sensors, b.sensors, strict=True)]
-            return second._replace(payload=ImuBatch.model_construct(sensors=sensors))
+            return second._replace(payload=ImuBatch(sensors=sensors))
         case ReferenceBatch() as a, ReferenceBatch() as b:
-            batch = ReferenceBatch.model_construct(
-                captured_ns=a.captured_ns + b.captured_ns, values=a.values + b.values
-            )
+            batch = ReferenceBatch(captured_ns=a.captured_ns + b.captured_ns, values=a.values + b.values)
             return second._replace(payload=batch)
     raise TypeError(f"messages of {first.stream.name} cannot be joined")
 
 
 def _joined_samples(a: SensorSamples, b: SensorSamples) -> SensorSamples:
-    return SensorSamples.model_construct(
+    return SensorSamples(
         captured_ns=a.captured_ns + b.captured_ns,
         angular_velocity=a.angular_velocity + b.angular_velocity,
         specific_force=a.specific_force + b.specific_force,

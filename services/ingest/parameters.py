@@ -9,7 +9,7 @@ class IngestParameters:
 
     pump_s: float = 0.005  # between two looks at what is due; half a tick of the usual 100 Hz
     most_per_pump: int = 200  # messages of one session in one look, so that none starves the others
-    chunk: int = 500  # messages made at once by the reading thread; 2.5 s of a 100 Hz hub with its truth
+    chunk: int = 200  # messages made at once by a reading thread; 1 s of a 100 Hz hub with its truth
     most_ticks: int = 5  # ticks in one message at most: 50 ms at 100 Hz, the budget's floor for a full ward
     lag_behind_s: float = 0.1  # later than this is behind
     lag_in_time_s: float = 0.03  # earlier than this is in time

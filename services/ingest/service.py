@@ -208,11 +208,11 @@ class IngestService:
         self._survey = ([playback.health() for playback in self._running.values()], self._rejections.report())
 
     def _end_all(self) -> None:
+        """Tokens and rings go with the connection, which is closed next."""
         now_s = time.monotonic()
         for playback in self._running.values():
             playback.end(now_s)
-        self._loop.run_for(
-            self._parameters.farewell_s, lambda: all(playback.is_recorded() for playback in self._running.values())
-        )
-        for playback in self._running.values():
-            playback.close()
+        if self._running_services["archive"]:
+            self._loop.run_for(
+                self._parameters.farewell_s, lambda: all(each.is_recorded() for each in self._running.values())
+            )

@@ -8,7 +8,7 @@ from operator import attrgetter
 import numpy as np
 from numpy.typing import NDArray
 
-from schemas.imu import ImuBatch, ReferenceBatch, SensorSamples
+from schemas.imu import ImuBatch, ReferenceBatch
 from services.flow.message import Stream
 from services.ingest.driver import REFERENCE_STREAM, SourceMessage
 
@@ -43,17 +43,21 @@ def hub_messages(stream: Stream, tracks: Sequence[ImuTrack], tick_ns: int) -> It
         (track.captured_ns.tolist(), track.angular_velocity.tolist(), track.specific_force.tolist()) for track in tracks
     ]
     for k in range(present):
-        # The arrays are finite and of equal length by contract, so the models need not be validated again.
-        sensors = [
-            SensorSamples.model_construct(
-                captured_ns=times[cut[k] : cut[k + 1]],
-                angular_velocity=rates[cut[k] : cut[k + 1]],
-                specific_force=forces[cut[k] : cut[k + 1]],
-            )
-            for (times, rates, forces), cut in zip(columns, cuts, strict=True)
-        ]
-        newest = max(samples.captured_ns[-1] for samples in sensors if samples.captured_ns)
-        yield SourceMessage(stream, newest, ImuBatch.model_construct(sensors=sensors))
+        # Validating one nested dict takes half the time of constructing the models one by one.
+        batch = ImuBatch.model_validate(
+            {
+                "sensors": [
+                    {
+                        "captured_ns": times[cut[k] : cut[k + 1]],
+                        "angular_velocity": rates[cut[k] : cut[k + 1]],
+                        "specific_force": forces[cut[k] : cut[k + 1]],
+                    }
+                    for (times, rates, forces), cut in zip(columns, cuts, strict=True)
+                ]
+            }
+        )
+        newest = max(samples.captured_ns[-1] for samples in batch.sensors if samples.captured_ns)
+        yield SourceMessage(stream, newest, batch)
 
 
 def reference_messages(track: ReferenceTrack, tick_ns: int) -> Iterator[SourceMessage]:
@@ -63,7 +67,7 @@ def reference_messages(track: ReferenceTrack, tick_ns: int) -> Iterator[SourceMe
     rows = [[None if value != value else value for value in row] for row in track.values.tolist()]
     for k in range(present):
         span = slice(cut[k], cut[k + 1])
-        batch = ReferenceBatch.model_construct(captured_ns=times[span], values=rows[span])
+        batch = ReferenceBatch(captured_ns=times[span], values=rows[span])
         yield SourceMessage(REFERENCE_STREAM, times[span][-1], batch)
 
 

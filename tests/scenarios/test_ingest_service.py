@@ -11,9 +11,11 @@ from schemas.health import Progress
 from schemas.session import SessionDescription
 from schemas.signals import command_key, description_key, progress_key, session_token_key
 from services.bus.connection import Bus
+from services.bus.loop import EventLoop
 from services.bus.router import open_router
 from services.bus.settings import BusSettings
-from services.flow.message import Envelope, encode_payload
+from services.flow.message import encode_payload
+from services.ingest.driver import streams_of
 from services.ingest.parameters import IngestParameters
 from services.ingest.service import IngestService
 from services.ingest.source import iter_messages, open_source
@@ -43,8 +45,9 @@ class Stage:
         self.received = {}
         self.finals = {}
         self.tokens = {}
-        for signal in ("imu", "reference"):
-            bus.subscribe_recovering(f"ambula/{SITE}/*/{signal}/*", self._take)
+        self.loop = EventLoop(bus)
+        self.thread = threading.Thread(target=self.loop.run)
+        self.thread.start()
         bus.watch_tokens(session_token_key(SITE, "*"), lambda key, alive: self.tokens.update({key: alive}))
 
     def order(self, command, body):
@@ -53,20 +56,28 @@ class Stage:
         return json.loads(answers[0].payload)
 
     def start(self, source=WALK, speed=None, session="s1", **more):
-        return self.order("start", {"source": source, "speed": speed, "session": session, **more})
+        answer = self.order("start", {"source": source, "speed": speed, "session": session, **more})
+        if "error" not in answer:
+            for stream in streams_of(SessionDescription.model_validate(answer)):
+                self.loop.post(lambda stream=stream: self.loop.receive(session, stream, None, self._take))
+        return answer
+
+    def close(self):
+        self.loop.stop()
+        self.thread.join(10.0)
+        self.loop.close()
 
     def of(self, session):
-        """Messages of a session: stream, envelope, payload; each stream in the order of its numbers."""
-        return sorted(self.received.get(session, []), key=lambda message: (message[0], message[1].sequence))
+        """Messages of a session as a lossless reader gets them: stream, envelope, payload."""
+        return list(self.received.get(session, []))
 
     def ends(self, session):
         return self.finals.get(session, 0)
 
     def _take(self, message):
-        _, _, session, signal, source = message.key.split("/")
-        envelope = Envelope.decode(message.attachment)
-        self.received.setdefault(session, []).append((f"{signal}/{source}", envelope, message.payload))
-        self.finals[session] = self.ends(session) + envelope.final
+        envelope = message.envelope
+        self.received.setdefault(message.session, []).append((message.stream.name, envelope, message.payload))
+        self.finals[message.session] = self.ends(message.session) + envelope.final
 
 
 @pytest.fixture
@@ -81,6 +92,7 @@ def stage(request):
             stage = Stage(settings, listener, service)
             wait_until(lambda: listener.ask(command_key(SITE, "ingest", "sources"), timeout_s=0.5))
             yield stage
+            stage.close()
             stop.set()
             thread.join(20.0)
             assert not thread.is_alive()
