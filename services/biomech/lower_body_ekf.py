@@ -110,10 +110,13 @@ class LowerBodyEkf:
         self.P[:] = np.diag(self._start_variance(len(self.P)))
 
     def loosen(self, joints: Sequence[int]) -> None:
-        """Make the positions of some joints uncertain, so that the next samples may move them."""
+        """Make some joints as uncertain as at the start, so that the next samples may move them."""
+        rotations = len(self.model.dofs) - self.model.first_rotation
+        starts = (self.noise.start_position_std, self.noise.start_velocity_std, self.noise.start_acceleration_std)
         for joint in joints:
-            column = joint - self.model.first_rotation
-            self.P[column, column] += self.noise.start_position_std**2
+            for order, std in enumerate(starts):
+                column = order * rotations + joint - self.model.first_rotation
+                self.P[column, column] += std**2
 
     def deviations(self) -> Array:
         """(2, n) standard deviations of position, rad, and velocity, rad/s; 0 for translations."""

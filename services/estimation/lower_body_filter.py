@@ -71,7 +71,9 @@ class LowerBodyFilter:
         self._heard_ns: list[int] = []
         self.unseen: frozenset[Segment] = frozenset(SEGMENTS)
         """Segments without an aligned sensor that spoke of late."""
-        self.valid = self._valid_without(self.unseen)
+        self._returned_ns: dict[Segment, int] = {}
+        self._missing = self.unseen
+        self.valid = self._valid_without(self._missing)
         """Per LOWER_BODY dof, after the newest tick."""
         self._rest = self._rest_without(self.unseen)
 
@@ -88,19 +90,29 @@ class LowerBodyFilter:
                 unseen.discard(self._segments[s])
         return frozenset(unseen)
 
-    def _see(self, unseen: frozenset[Segment]) -> None:
+    def _see(self, unseen: frozenset[Segment], now_ns: int) -> None:
         """What changes when a sensor falls silent or comes back."""
         for segment in sorted(self.unseen - unseen):
             self.ekf.loosen(self.model.joints_of(segment))
+            if self._last_ns is not None:
+                self._returned_ns[segment] = now_ns
         self.unseen = unseen
-        self.valid = self._valid_without(unseen)
         self._rest = self._rest_without(unseen)
 
-    def _valid_without(self, unseen: frozenset[Segment]) -> list[bool]:
+    def _judge(self, now_ns: int) -> None:
+        """Which degrees of freedom are valid: seen, and not just come back."""
+        doubt_ns = round(self.parameters.doubt_s * 1e9)
+        self._returned_ns = {s: ns for s, ns in self._returned_ns.items() if now_ns - ns < doubt_ns}
+        missing = self.unseen | frozenset(self._returned_ns)
+        if missing != self._missing:
+            self._missing = missing
+            self.valid = self._valid_without(missing)
+
+    def _valid_without(self, missing: frozenset[Segment]) -> list[bool]:
         """Per LOWER_BODY dof: both segments of the joint are seen, and the model has the dof."""
         joints = [segment_of(dof) for dof in LOWER_BODY]
         return [
-            bool(index >= 0) and not {segment, PARENT_SEGMENT.get(segment, segment)} & unseen
+            bool(index >= 0) and not {segment, PARENT_SEGMENT.get(segment, segment)} & missing
             for segment, index in zip(joints, self.model.reported, strict=True)
         ]
 
@@ -110,9 +122,11 @@ class LowerBodyFilter:
         if dt_s > self.parameters.longest_step_s:
             self.ekf.settle()
             self._jerk[:] = 0.0
+            self._returned_ns = dict.fromkeys(SEGMENTS, tick.captured_ns)
         unseen = self._listen(tick)
         if unseen != self.unseen:
-            self._see(unseen)
+            self._see(unseen, tick.captured_ns)
+        self._judge(tick.captured_ns)
         step_s = dt_s if dt_s <= self.parameters.longest_step_s else 0.0
         self.ekf.advance(step_s, tick.samples, tick.fresh & self._aligned, self._jerk, self._rest)
         reading = self._follow_rhythm(dt_s)
@@ -162,6 +176,7 @@ class LowerBodyFilter:
             "last_ns": self._last_ns,
             "heard_ns": list(self._heard_ns),
             "unseen": sorted(self.unseen),
+            "returned_ns": {segment.value: ns for segment, ns in sorted(self._returned_ns.items())},
             "rhythm": self._rhythm.snapshot(),
             "driver": self._driver.snapshot() if self._driver is not None and driven else None,
         }
@@ -174,7 +189,9 @@ class LowerBodyFilter:
         self._last_ns = state["last_ns"]
         self._heard_ns = list(state["heard_ns"])
         self.unseen = frozenset(Segment(name) for name in state["unseen"])
-        self.valid, self._rest = self._valid_without(self.unseen), self._rest_without(self.unseen)
+        self._returned_ns = {Segment(name): ns for name, ns in state["returned_ns"].items()}
+        self._missing = self.unseen | frozenset(self._returned_ns)
+        self.valid, self._rest = self._valid_without(self._missing), self._rest_without(self.unseen)
         self._rhythm.restore(state["rhythm"])
         if self._driver is not None and state["driver"] is not None:
             self._driver.restore(state["driver"])

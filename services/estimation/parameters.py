@@ -58,10 +58,11 @@ class FilterParameters:
     noise: NoiseModel = field(default_factory=NoiseModel)
     soft_knees: bool = True
     silent_after_s: float = 0.25  # s without a sample until a segment counts as unseen
+    doubt_s: float = 1.0  # s after a sensor's return, or after a gap, in which its joints are not valid yet
     longest_step_s: float = 0.25  # s between samples; after more the filter settles anew, keeping the pose
-    rest_position_std: float = 0.5  # rad at 100 Hz: pull to zero of a joint that no sensor sees
-    rest_velocity_std: float = 2.0  # rad/s at 100 Hz, the same for its velocity
-    rest_acceleration_std: float = 50.0  # rad/s^2 at 100 Hz, the same for its acceleration
+    rest_position_std: float = 0.2  # rad at 100 Hz: pull to zero of a joint that no sensor sees
+    rest_velocity_std: float = 0.5  # rad/s at 100 Hz, the same for its velocity
+    rest_acceleration_std: float = 10.0  # rad/s^2 at 100 Hz, the same for its acceleration
     longest_jerk: float = 2000.0  # rad/s^3, bound on what a rhythm may feed; knee jerk in walking stays below 1500
 
 

@@ -15,7 +15,7 @@ from services.estimation.node import EstimationNode
 from services.flow.message import Message
 
 sys.path.insert(0, str(Path(__file__).parent))
-import walks
+import estimation_walks as walks
 
 SHANK_LEFT = walks.SEGMENTS.index(Segment.SHANK_LEFT)
 
