@@ -91,7 +91,7 @@ def _angles(walked: float) -> Array:
         p = 2.0 * np.pi * walked + phase
         angles[f"hip_flexion_{side}"] = 0.15 + 0.4 * np.cos(p)
         # One large flexion in swing, a small one in stance; the swing comes before the thigh is farthest forward.
-        angles[f"knee_flexion_{side}"] = 0.45 + 0.42 * np.cos(p + 1.1) + 0.18 * np.cos(2.0 * p + 0.6)
+        angles[f"knee_flexion_{side}"] = 0.45 + 0.42 * np.cos(p + 1.1) + 0.18 * np.cos(2.0 * p + 2.6)
         angles[f"hip_adduction_{side}"] = 0.05 * np.sin(p)
     angles["pelvis_rotation"] = 0.06 * np.sin(2.0 * np.pi * walked)
     return ease * np.array(list(angles.values()))
