@@ -132,12 +132,14 @@ def estimator_rows(name: str, angles: Array, truth: NeuraTruth, baseline: Figure
         else:
             rows.append(at_most(mean, mean_of(scores), "deg", floor, beside))
         absolute = float(np.mean([s.absolute_deg for s in scores.values()]))
-        rows.append(informative(f"{title}: offset-removed, shift {FIXED_SHIFT}", mean_of(fixed[key]), "deg"))
+        rows.append(
+            informative(f"{title}: offset-removed, shift {FIXED_SHIFT}", mean_of(fixed[key]), "deg", detail=True)
+        )
         rows.append(informative(f"{title}: absolute", absolute, "deg"))
         for side, s in scores.items():
-            rows.append(informative(f"{title}, {side}: offset-removed", s.offset_removed_deg, "deg"))
-            rows.append(informative(f"{title}, {side}: r", s.correlation, ""))
-            rows.append(informative(f"{title}, {side}: shift", s.shift, "samples"))
+            rows.append(informative(f"{title}, {side}: offset-removed", s.offset_removed_deg, "deg", detail=True))
+            rows.append(informative(f"{title}, {side}: r", s.correlation, "", detail=True))
+            rows.append(informative(f"{title}, {side}: shift", s.shift, "samples", detail=True))
     return rows
 
 

@@ -10,7 +10,10 @@ from rich.table import Table
 
 @dataclass(frozen=True)
 class Row:
-    """One figure. `value` None: it could not be measured, `target` then may say why."""
+    """One figure. `value` None: it could not be measured, `target` then may say why.
+
+    `detail` rows are always written to files and shown in the terminal on demand.
+    """
 
     name: str
     value: float | None
@@ -18,6 +21,7 @@ class Row:
     target: str | None
     met: bool | None
     baseline: float | None
+    detail: bool = False
 
 
 def at_most(name: str, value: float, unit: str, limit: float, baseline: float | None = None) -> Row:
@@ -30,9 +34,11 @@ def at_least(name: str, value: float, unit: str, limit: float, baseline: float |
     return Row(name, value, unit, f">= {limit:g}", value >= limit, baseline)
 
 
-def informative(name: str, value: float | None, unit: str, baseline: float | None = None) -> Row:
+def informative(
+    name: str, value: float | None, unit: str, baseline: float | None = None, *, detail: bool = False
+) -> Row:
     """A figure without a target."""
-    return Row(name, value, unit, None, None, baseline)
+    return Row(name, value, unit, None, None, baseline, detail)
 
 
 @dataclass(frozen=True)
@@ -48,20 +54,27 @@ class Scoreboard:
         """Rows that did not reach their target."""
         return [row for row in self.rows if row.met is False]
 
-    def print(self) -> None:
+    def print(self, *, details: bool = False) -> None:
         """Write the table to the terminal."""
         table = Table(title=self.title, caption=self.note or None, caption_justify="left")
         for heading in ("figure", "value", "unit", "target", "", "baseline"):
-            table.add_column(heading, justify="right" if heading in ("value", "baseline") else "left")
+            number = heading in ("value", "baseline")
+            table.add_column(heading, justify="right" if number else "left", no_wrap=heading != "figure")
         for row in self.rows:
-            table.add_row(
-                row.name, _number(row.value), row.unit, row.target or "", _mark(row.met), _number(row.baseline)
-            )
-        Console().print(table)
+            if details or not row.detail:
+                table.add_row(
+                    row.name, _number(row.value), row.unit, row.target or "", _mark(row.met), _number(row.baseline)
+                )
+        console = Console()
+        console.print(table)
+        hidden = 0 if details else sum(row.detail for row in self.rows)
+        if hidden:
+            console.print(f"{hidden} more rows with --all or in the --json file")
 
     def write_json(self, path: Path) -> None:
         """Write the rows as {name, value, unit, target, met, baseline}."""
-        document = {"title": self.title, "note": self.note, "rows": [asdict(row) for row in self.rows]}
+        rows = [{name: value for name, value in asdict(row).items() if name != "detail"} for row in self.rows]
+        document = {"title": self.title, "note": self.note, "rows": rows}
         path.write_text(json.dumps(document, indent=2) + "\n")
 
 

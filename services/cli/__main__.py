@@ -98,6 +98,7 @@ def bench(
     name: Annotated[str | None, typer.Argument(help="which scoreboard; without a name they are listed")] = None,
     subject: Annotated[str | None, typer.Argument(help="what to measure it on, e.g. neura")] = None,
     json_path: Annotated[Path | None, typer.Option("--json", help="also write the rows to this file")] = None,
+    details: Annotated[bool, typer.Option("--all", help="print every row, e.g. each side by itself")] = False,
 ) -> None:
     """Measure a claim and print it beside its target and its baseline."""
     from services.bench.registry import SCOREBOARDS
@@ -111,7 +112,7 @@ def bench(
     board = SCOREBOARDS[name]
     with told(ValueError, OSError):
         result = board(json_path) if subject is None else board(json_path, subject)
-        result.print()
+        result.print(details=details)
 
 
 @app.command()

@@ -12,7 +12,6 @@ from schemas.signals import METRICS, command_key, progress_key, stream_key
 from services.bus.connection import Bus
 from services.bus.received import Received
 
-
 SILENCE_S = 60.0
 """s. A service that crashed is back well before; a session without any news for so long is not coming to its end."""
 
