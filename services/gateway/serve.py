@@ -39,6 +39,7 @@ def serve() -> int:
         access_log=False,
         log_config=None,
         ws_max_size=live.parameters.most_socket_bytes,
+        ws_per_message_deflate=False,
         timeout_graceful_shutdown=2,
     )
     server = uvicorn.Server(config)

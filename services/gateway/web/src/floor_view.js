@@ -149,10 +149,10 @@ class Card {
       "a",
       { class: "card", href: `#/sessions/${session.id}` },
       this.title,
-      el("div", { class: "card-head" }, this.word, this.code),
+      this.word,
       facts,
       this.advice,
-      this.age,
+      el("div", { class: "card-foot" }, this.age, this.code),
     );
   }
 

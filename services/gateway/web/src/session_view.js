@@ -4,7 +4,7 @@ import { el, fill } from "./dom.js";
 import { LiveView } from "./live_view.js";
 import { ReportView } from "./report_view.js";
 
-const ASK_AGAIN_MS = 1000;
+const ASK_AGAIN_MS = 500;
 
 export class SessionView {
   constructor(host, id) {

@@ -3,9 +3,9 @@ import { SIDES, Stage } from "./figure.js";
 import { GHOST, INVALID, PELVIS, SIDE_COLOUR } from "./palette.js";
 import { svg } from "./dom.js";
 
-const SCALE = 260;
-const WIDTH = 420;
-const FLOOR = 430;
+const SCALE = 285;
+const WIDTH = 380;
+const FLOOR = 428;
 
 export class Skeleton2d {
   constructor(host) {
@@ -13,7 +13,7 @@ export class Skeleton2d {
     this.stage = new Stage();
     this.view = "side";
     this.root = svg("svg", {
-      viewBox: `0 0 ${WIDTH} 460`,
+      viewBox: `0 0 ${WIDTH} 450`,
       role: "img",
       "aria-label": "Stick figure of the legs",
       class: "paper",
