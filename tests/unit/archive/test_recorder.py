@@ -109,6 +109,35 @@ def test_a_slow_sync_does_not_hold_up_what_a_kill_would_cost(stage, tape):
     until(lambda: writer.durable.positions == {"imu/hub": 29})
 
 
+class UnsyncableDisk(Disk):
+    def sync(self, descriptor):
+        raise OSError(errno.EIO, "injected")
+
+
+def test_a_failed_sync_ends_the_file_and_promises_nothing(stage, tape):
+    """What a failed sync has left on the disk is unknown: nothing more may go into that file."""
+    writer = stage.begin("s1", UnsyncableDisk())
+    stage.recorder.put("s1", tape.record(tape.hub, 0))
+    until(lambda: stage.closed)
+    assert (stage.closed[0].error.errno, stage.closed[0].last) == (errno.EIO, True)
+    assert writer.durable.positions == {}
+    stage.recorder.put("s1", tape.record(tape.hub, 1))
+    until(lambda: stage.recorder.dropped == 1)
+
+
+def test_files_rotate_while_messages_come(tmp_path, description, tape):
+    stage = Stage(tmp_path, description, ArchiveParameters(flush_interval_s=0.01, rotation_s=0.05))
+    writer = stage.begin("s1")
+    for record in tape.walk(100):
+        stage.recorder.put("s1", record)
+        time.sleep(0.002)
+    until(lambda: writer.durable.positions == {"imu/hub": 99})
+    stage.recorder.stop()
+    assert [closed.last for closed in stage.closed] == [False] * (len(stage.closed) - 1) + [True]
+    assert len([part for closed in stage.closed for part in closed.parts]) > 1
+    assert list(open_recording(tmp_path / "s1").records()) == tape.walk(100)
+
+
 class StuckDisk(Disk):
     def __init__(self, gate):
         self.gate = gate
@@ -174,3 +203,18 @@ def test_sealer_tries_again(recorded, tape, description, failing_disk, fail_at):
     assert len(list(open_recording(folder).records())) == 30
     assert recover(folder, None, VERSION, Disk()).parts == []
     assert [entry.name for entry in load(folder).files] == ["raw.mcap"]
+
+
+def test_files_that_wait_to_be_closed_can_be_taken_back(recorded, tape, description, failing_disk):
+    """A session that goes on takes stock of its own open files; nobody may close them meanwhile."""
+    folder = recorded(tape.walk(30), closed=False)
+    sealer = Sealer("ambula test", failing_disk(1, errno.ENOSPC, forever=True), FAST)
+    sealer.submit(SealJob(folder, new_manifest(description, VERSION), [folder / "raw.mcap.part"]))
+    until(lambda: sealer.failures > 1)
+    sealer.take_back(folder)
+    assert sealer.wait(1)
+    failures = sealer.failures
+    sealer.take_back(folder)
+    sealer.stop()
+    assert sealer.failures == failures
+    assert recover(folder, None, VERSION, Disk()).parts == [folder / "raw.mcap.part"]
