@@ -8,12 +8,13 @@ from numpy.typing import NDArray
 from schemas.health import Reason
 from schemas.session import SensorDescription, SessionDescription
 from schemas.vocabulary import ESTIMATORS
+from services.biomech.rotations import angle_between
 from services.estimation.alignment import Alignment, AxisSearch, FlexionAxis
 from services.estimation.lower_body_filter import Calibrated
 from services.estimation.parameters import EstimationParameters
 from services.estimation.samples import TickBatch, pack_batches, unpack_batches
 from services.estimation.sensor_checks import SensorChecks
-from services.estimation.standing import StandingDetector, StandingReference
+from services.estimation.standing import StandingDetector, StandingReference, pack_reference, unpack_reference
 from services.flow.node import State, pack_array, unpack_array
 
 Array = NDArray[np.float64]
@@ -22,8 +23,8 @@ Array = NDArray[np.float64]
 class Calibrator:
     """Keeps what may have to be estimated later, until the body is calibrated.
 
-    While the person stands, the last `before_walking_s` are kept. From then on every batch is kept: once the axes are
-    clear (some seconds into the walk) the filter runs over all of them, so nothing of the walk is lost.
+    While the person stands, the last `before_walking_s` are kept. From then on every batch is kept, at most
+    `give_up_after_s`: once the axes are clear (some seconds into the walk) the filter runs over all of them.
     """
 
     def __init__(
@@ -38,11 +39,12 @@ class Calibrator:
         self._looked_ns = 0
         self._axes: dict[int, FlexionAxis] = {}
         self._refused: list[int] = []
+        self._begun: StandingReference | None = None
 
     @property
     def reference(self) -> StandingReference | None:
-        """The standing that counts."""
-        return self.standing.reference
+        """The standing that counts: the one before the movement that is being looked at, else the newest."""
+        return self._begun or self.standing.reference
 
     @property
     def refused(self) -> NDArray[np.bool_]:
@@ -66,29 +68,48 @@ class Calibrator:
         for tick in batch.ticks:
             self.standing.add(tick)
         self.batches.append(batch)
-        if self.reference is None or self.standing.is_still:
+        reference = self._moving_since(self.standing.reference)
+        if reference is None:
             self._keep(self.parameters.before_walking_s, batch.captured_ns)
             self._looked_ns, self._axes = batch.captured_ns, {}
             return None
-        self._report_units(checks)
+        self._report_units(reference, checks)
         if batch.captured_ns - self._looked_ns < self.parameters.alignment.look_every_s * 1e9:
             return None
         self._looked_ns = batch.captured_ns
-        return self._look(self.reference)
+        return self._look(reference)
+
+    def _moving_since(self, newest: StandingReference | None) -> StandingReference | None:
+        """The standing from which the movement at hand began; None before it.
+
+        Pauses in an exercise are standing too: as long as the sensors' verticals are the same, the movement goes on.
+        When they are not, a sensor was moved or the first posture was another: begin again from the newest.
+        """
+        if self._begun is not None and newest is not None and not self._agree(self._begun, newest):
+            self._begun = None
+        if self._begun is None and not self.standing.is_still:
+            self._begun = newest
+        return self._begun
+
+    def _agree(self, before: StandingReference, now: StandingReference) -> bool:
+        return all(
+            angle_between(before.mean_force[s], now.mean_force[s]) <= self.parameters.standing.same_vertical
+            for s in np.flatnonzero(before.usable & now.usable)
+        )
 
     def finish(self) -> Calibrated | None:
         """The stream has ended: calibrate with what there is, if there was a standing and a movement."""
-        if self.reference is None or self.standing.is_still or not self._axes:
+        if self._begun is None or not self._axes:
             return None
-        return self._calibrated(self.reference, AxisSearch(self.sensors, self.reference, self.parameters.alignment))
+        return self._calibrated(self._begun, AxisSearch(self.sensors, self._begun, self.parameters.alignment))
 
     def _keep(self, seconds: float, now_ns: int) -> None:
         oldest_ns = now_ns - round(seconds * 1e9)
         first = next((i for i, batch in enumerate(self.batches) if batch.captured_ns >= oldest_ns), 0)
         del self.batches[:first]
 
-    def _report_units(self, checks: SensorChecks) -> None:
-        refused = [int(s) for s in np.flatnonzero(self.refused)]
+    def _report_units(self, reference: StandingReference, checks: SensorChecks) -> None:
+        refused = [int(s) for s in np.flatnonzero(reference.wrong_units)]
         for s in refused:
             if s not in self._refused:
                 checks.refuse(self.sensors[s].name, Reason.WRONG_UNITS)
@@ -123,6 +144,7 @@ class Calibrator:
             "axes_of": [s for s, _ in axes],
             "axes": pack_array(np.array(table).reshape(-1, 7)),
             "refused": self._refused,
+            "begun": None if self._begun is None else pack_reference(self._begun),
         }
 
     def restore(self, state: State) -> None:
@@ -130,6 +152,7 @@ class Calibrator:
         self.standing.restore(state["standing"])
         self.batches = unpack_batches(state["batches"], len(self.sensors))
         self._looked_ns, self._refused = state["looked_ns"], list(state["refused"])
+        self._begun = None if state["begun"] is None else unpack_reference(state["begun"])
         rows = unpack_array(state["axes"])
         self._axes = {
             s: FlexionAxis(row[:3].copy(), float(row[3]), float(row[4]), float(row[5]), bool(row[6]))

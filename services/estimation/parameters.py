@@ -12,7 +12,7 @@ class CheckParameters:
     largest_rate: float = 40.0  # rad/s, above the range of worn gyroscopes (2000 deg/s = 35 rad/s)
     largest_force: float = 320.0  # m/s^2, above the range of worn accelerometers (32 g)
     rate_jump: float = 12.0  # rad/s from one sample to the next; walking stays below 6 at 100 Hz
-    force_jump: float = 120.0  # m/s^2 from one sample to the next; heel strikes at the shank stay below 60
+    force_jump: float = 250.0  # m/s^2 from one sample to the next; landings from a jump reach 200
     stuck_after: int = 25  # identical samples in a row; real sensors have noise in their last digit
     silent_after_s: float = 0.25  # s without a usable sample until a sensor counts as missing
     farthest_from_message_s: float = 10.0  # s between a sample and its message; more is a broken time stamp
@@ -28,6 +28,7 @@ class StandingParameters:
     still_force_std: float = 0.5  # m/s^2 within the block
     gravity: float = 9.81  # m/s^2
     gravity_tolerance: float = 0.5  # m/s^2; more is a unit or scale error
+    same_vertical: float = 0.17  # rad (10 deg) between two standings of the same person with the same straps
     steepest_thigh: float = (
         0.7  # |cos| between skin normal and vertical; a sitting thigh is above, a standing one below
     )

@@ -208,3 +208,33 @@ def test_empty_messages_lead_to_nothing() -> None:
     times = [t for state in walks.joint_states(outputs) for t in state.captured_ns]
     assert not [t for t in times if 7.0e9 < t < 7.5e9]
     assert max(abs(v) for state in walks.joint_states(outputs) for v in state.position[0]) < 3.0
+
+
+def test_pauses_do_not_lose_the_movement_before_them() -> None:
+    """A first half stride, two seconds of standing, then the walk: estimates begin with the first movement."""
+    samples = walks.walk()[1]
+    bow = np.concatenate([samples[250:310], samples[310:250:-1]]).copy()
+    bow[60:, :, :3] *= -1.0
+    stream = np.concatenate([samples[:250], bow, samples[:200], samples[200:]])
+    description = walks.describe()
+    outputs = walks.run(EstimationNode(description), walks.messages(description, stream))
+    assert walks.joint_states(outputs)[0].captured_ns[0] <= 2_500_000_000
+    assert walks.joint_states(outputs)[-1].captured_ns[0] == 10_000_000 * (len(stream) - 1)
+
+
+def test_a_sensor_that_is_strapped_on_anew_begins_again() -> None:
+    """Standing, a hand turns the left shank's sensor, standing again, walking: the second standing counts."""
+    samples = walks.walk()[1].copy()
+    tilt = np.array([[1.0, 0.0, 0.0], [0.0, np.cos(0.6), -np.sin(0.6)], [0.0, np.sin(0.6), np.cos(0.6)]])
+    before = samples[:250].copy()
+    for columns in (slice(0, 3), slice(3, 6)):
+        before[:, SHANK_LEFT, columns] = before[:, SHANK_LEFT, columns] @ tilt
+    turning = before[:40].copy()
+    turning[:, SHANK_LEFT, 0] += 1.5
+    description = walks.describe()
+    stream = np.concatenate([before, turning, samples])
+    outputs = walks.run(EstimationNode(description), walks.messages(description, stream))
+    (calibration,) = walks.calibrations(outputs)
+    shank = next(sensor for sensor in calibration.sensors if sensor.segment is Segment.SHANK_LEFT)
+    R = matrix_from_quaternion(np.array(shank.quat_segment_from_sensor))
+    assert angle_between(R[1], walks.mounting()[Segment.SHANK_LEFT][1]) < math.radians(2)
