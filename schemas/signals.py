@@ -23,9 +23,9 @@ class Quality(StrEnum):
     STATE = "state"
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True, slots=True, eq=False)
 class Signal:
-    """A row of the table."""
+    """A row of the table. Each row exists once, so rows are compared and hashed as objects, which is quick."""
 
     name: str
     model: type[Payload]

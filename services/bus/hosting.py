@@ -192,22 +192,27 @@ class NodeSession:
             self._publishers[message.stream].forward(message)
 
     def _tell_progress(self, now: float) -> None:
-        progress = Progress(
-            service=self.host.service,
-            captured_ns=self.host.captured_ns,
-            positions={
-                stream.name: self.host.inputs[stream].sequence if stream in self.host.inputs else -1
-                for stream in self.host.node.streams
-            },
-            ended=self.host.ended,
-        )
         waited = now - self._told_at
-        far = self._told is None or progress.captured_ns - self._told.captured_ns >= PROGRESS_STEP_NS
-        news = progress != self._told and (far or progress.ended or waited >= 1.0)
-        if news or waited >= REPEAT_S:
+        far = self._told is None or self.host.captured_ns - self._told.captured_ns >= PROGRESS_STEP_NS
+        if not (far or self.host.ended or waited >= 1.0):
+            return
+        progress = self._progress()
+        if progress != self._told or waited >= REPEAT_S:
             key = progress_key(self._bus.settings.site, self.host.session, self.host.service)
             self._bus.put(key, progress.model_dump_json().encode())
             self._told, self._told_at = progress, now
+
+    def _progress(self) -> Progress:
+        positions = {
+            stream.name: self.host.inputs[stream].sequence if stream in self.host.inputs else -1
+            for stream in self.host.node.streams
+        }
+        return Progress(
+            service=self.host.service,
+            captured_ns=self.host.captured_ns,
+            positions=positions,
+            ended=self.host.ended,
+        )
 
     def _put_checkpoint(self, checkpoint: Checkpoint | None) -> None:
         if checkpoint is not None:
