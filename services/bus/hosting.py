@@ -46,6 +46,8 @@ def open_host(bus: Bus, service: str, build: NodeFactory, description: SessionDe
         if checkpoint is not None and _resume(host, checkpoint):
             logger.info(event("resumed", session=session, captured_ns=host.captured_ns))
             return host
+        if checkpoint is not None:
+            host = HostedNode(service, session, build(description))
         if not any(_begins_late(bus, session, stream) for stream in host.node.streams):
             return host
         if time.monotonic() >= give_up_at:

@@ -61,7 +61,7 @@ class HostedNode:
         if (checkpoint.service, checkpoint.session) != (self.service, self.session):
             raise ValueError(f"checkpoint of {checkpoint.service}/{checkpoint.session}, not of {self.service}")
         self.captured_ns = checkpoint.captured_ns
-        self.epoch = max(self.epoch, *(place.epoch for place in checkpoint.outputs.values()))
+        self.epoch = max([self.epoch, *(place.epoch for place in checkpoint.outputs.values())])
         self.inputs = {Stream.parse(name): position for name, position in checkpoint.inputs.items()}
         self.outputs = {Stream.parse(name): position for name, position in checkpoint.outputs.items()}
         self.node.restore(checkpoint.state)
