@@ -125,7 +125,8 @@ class AxisSearch:
         """Axes from samples (n, S, 6), fresh (n, S), by sensor."""
         axes: dict[int, FlexionAxis] = {}
         for thigh, shank in LEGS:
-            worn = {s: self._turning(s, samples, fresh) for s in self._wearing(thigh, shank)}
+            speaking = np.any(fresh[-self.parameters.silent_ticks :], axis=0).tolist()
+            worn = {s: self._turning(s, samples, fresh) for s in self._wearing(thigh, shank) if speaking[s]}
             signs = self._signs_by_walk({self.sensors[s].segment: found for s, found in worn.items()}, thigh, shank)
             for s, (rates, axis, ratio, moving) in worn.items():
                 placed = placed_right(self.sensors[s], self.up(s))
@@ -171,6 +172,10 @@ class AxisSearch:
             and angle_between(axis.right, before[s].right) <= limits.steadiest_change
             for s, axis in axes.items()
         )
+
+    def is_moving(self, axes: dict[int, FlexionAxis]) -> bool:
+        """Some leg sensor has moved enough to tell an axis."""
+        return any(axis.moving_s >= self.parameters.shortest_moving_s for axis in axes.values())
 
     def align(self, axes: dict[int, FlexionAxis]) -> Alignment:
         """Frames of all sensors that standing and the axes allow."""

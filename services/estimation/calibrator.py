@@ -124,7 +124,8 @@ class Calibrator:
         axes = search.axes(np.array([tick.samples for tick in ticks]), np.array([tick.fresh for tick in ticks]))
         clear = search.is_clear(axes, self._axes)
         self._axes = axes
-        if clear:
+        kept_s = (self.batches[-1].captured_ns - self.batches[0].captured_ns) / 1e9
+        if clear or (kept_s >= limits.give_up_after_s and search.is_moving(axes)):
             return self._calibrated(reference, search)
         self._keep(limits.give_up_after_s, self.batches[-1].captured_ns)
         return None

@@ -42,7 +42,7 @@ def test_axes_point_to_the_right(placements) -> None:
 
 def test_clear_only_after_enough_walking_and_a_steady_axis() -> None:
     subject = search()
-    early, late, later = (subject.axes(*walked(seconds)) for seconds in (0.8, 3.0, 3.5))
+    early, late, later = (subject.axes(*walked(seconds)) for seconds in (0.8, 4.5, 5.0))
     assert not subject.is_clear(early, early)
     assert subject.is_clear(later, late)
     assert not subject.is_clear(later, {}), "one look is not enough"
@@ -114,3 +114,13 @@ def test_signs_from_the_walk_alone() -> None:
     assert walking_signs(-thigh, shank, 100.0) == (-1.0, 1.0)
     assert walking_signs(thigh, -shank, 100.0) == (1.0, -1.0)
     assert walking_signs(None, -shank, 100.0) == (1.0, -1.0)
+
+
+def test_a_sensor_that_fell_silent_is_not_waited_for() -> None:
+    subject = search()
+    samples, fresh = walked(5.0)
+    fresh[100:, 2] = False
+    axes = subject.axes(samples, fresh)
+    assert sorted(axes) == [1, 3, 4]
+    assert subject.is_clear(axes, axes)
+    assert subject.align(axes).aligned.all(), "its placement serves"
