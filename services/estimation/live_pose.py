@@ -21,6 +21,7 @@ STATE_WORDS = {
     SensorState.MISSING: "sends nothing",
     SensorState.STUCK: "repeats the same values",
     SensorState.REJECTED: "sends values that cannot be used",
+    SensorState.CALIBRATING: "came after the calibration: start a new session to use it",
 }
 
 

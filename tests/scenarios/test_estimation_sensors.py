@@ -104,6 +104,17 @@ def test_off_at_the_start(sensor: str) -> None:
     assert sensor_states(outputs, sensor, 8.0, 17.0) == {SensorState.MISSING}
 
 
+def test_on_midway() -> None:
+    """A sensor that was never seen standing cannot be used: its joints stay invalid and the screen says why."""
+    _, outputs = damaged(SensorOff("shank_left", 0.0, 12.0))
+    assert_finite(outputs)
+    assert validity(outputs, "knee_flexion_left", 12.5, 17.0) == {False}
+    assert validity(outputs, "knee_flexion_right", 12.5, 17.0) == {True}
+    assert sensor_states(outputs, "shank_left", 12.5, 17.0) == {SensorState.CALIBRATING}
+    last = [output.payload for output in outputs if isinstance(output.payload, LivePose)][-1]
+    assert last.message.startswith("Sensor shank_left came after the calibration")
+
+
 @pytest.mark.parametrize("sensor", list(OBSERVED_BY))
 def test_off_midway_and_back(sensor: str) -> None:
     """Within a second it is missing and its joints are not valid; three seconds after its return all is as before."""
