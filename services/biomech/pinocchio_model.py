@@ -100,7 +100,7 @@ class PinocchioBody:
         H[3:, 0] = a_q[:3] + W @ v_q[:3] - U @ v_q[3:] + pin.skew(gravity) @ a_a[3:]
         H[3:, 1] = a_v[:3] + W @ a_a[:3] - U @ a_a[3:]
         H[3:, 2] = a_a[:3]
-        return np.concatenate([w, spatial.linear + np.cross(w, u) + gravity]), H
+        return np.concatenate([w, spatial.linear + W @ u + gravity]), H
 
     def yaw(self, segment: Segment, position: Array) -> tuple[float, Array]:
         """Heading of a segment's forward axis, rad, positive to the left, and its derivative (n,)."""
@@ -109,7 +109,7 @@ class PinocchioBody:
         frame = self.segment_frames[segment]
         R = self.data.oMf[frame].rotation
         angular = pin.getFrameJacobian(self.model, self.data, frame, pin.LOCAL_WORLD_ALIGNED)[3:]
-        d = np.cross(angular.T, R[:, 0]).T
+        d = -pin.skew(R[:, 0]) @ angular
         flat = R[0, 0] ** 2 + R[2, 0] ** 2
         return float(np.arctan2(-R[2, 0], R[0, 0])), (R[2, 0] * d[0] - R[0, 0] * d[2]) / flat
 

@@ -38,6 +38,7 @@ class TextbookEkf:
         self.measurement, self.noise = measurement, noise
         self.n, self.t = len(model.dofs), model.first_rotation
         self.soft = model.soft
+        self._soft_rows = np.eye(3 * self.n)[self.soft]
         self._transitions: dict[float, tuple[Array, Array, Array]] = {}
         self.x = np.zeros(3 * self.n)
         starts = (noise.start_position_std, noise.start_velocity_std, noise.start_acceleration_std)
@@ -76,21 +77,20 @@ class TextbookEkf:
 
     def _measurement(self, samples: Array, dt_s: float) -> tuple[Array, Array, Array]:
         """Innovations, Jacobian and noise covariance of all rows."""
-        z, H, variances = [], [], []
-        x = self.x.reshape(3, self.n)
-        for sample, (expected, rows) in zip(samples, self._sample_rows(x), strict=True):
-            z += list(sample - expected)
-            H += list(rows.reshape(6, -1))
-            variances += [self.noise.gyro_std**2] * 3 + [self.noise.accel_std**2] * 3
-        for innovation, row in self._yaw_rows(x[0]):
-            z.append(innovation)
-            H.append(row)
-            variances.append(self.noise.yaw_std**2 * NOMINAL_DT_S / dt_s)
-        for j in self.soft:
-            z.append(-x[0, j])
-            H.append(np.eye(3 * self.n)[j])
-            variances.append(self.noise.soft_knee_std**2 * NOMINAL_DT_S / dt_s)
-        return np.array(z), np.array(H), np.diag(variances)
+        x, wide = self.x.reshape(3, self.n), NOMINAL_DT_S / dt_s
+        expected = self._sample_rows(x)
+        yaws = self._yaw_rows(x[0])
+        z = [sample - value for sample, (value, _) in zip(samples, expected, strict=True)]
+        H = [rows.reshape(6, -1) for _, rows in expected] + [row[None] for _, row in yaws] + [self._soft_rows]
+        variances = np.concatenate(
+            [
+                np.tile([self.noise.gyro_std**2] * 3 + [self.noise.accel_std**2] * 3, len(samples)),
+                np.full(len(yaws), self.noise.yaw_std**2 * wide),
+                np.full(len(self.soft), self.noise.soft_knee_std**2 * wide),
+            ]
+        )
+        innovations = [*z, np.array([yaw for yaw, _ in yaws]), -x[0, self.soft]]
+        return np.concatenate(innovations), np.concatenate(H), np.diag(variances)
 
     def _sample_rows(self, x: Array) -> list[tuple[Array, Array]]:
         """Expected sample (6,) and rows (6, 3, n) of each sensor."""
