@@ -53,7 +53,7 @@ schemas: install ## write schemas/published from the models
 	$(BIN)/python -m services.cli.publish_schemas
 
 screenshots: install ## the pictures of the README
-	$(BIN)/python -m services.cli.screenshots
+	$(BIN)/python -m services.cli.screenshots services/gateway/pictures
 
 lock: $(VENV)/.installed ## pin all dependencies again
 	$(BIN)/python -m pip install --quiet uv

@@ -1,5 +1,8 @@
 """Samples of the worn sensors become joint states with their rhythm, a calibration and a picture for the screen."""
 
+from collections import deque
+from collections.abc import Iterable
+
 import numpy as np
 
 from schemas.health import Rejection
@@ -13,7 +16,7 @@ from services.estimation.intake import Intake
 from services.estimation.live_pose import estimated_pose, sensor_statuses, waiting_pose
 from services.estimation.lower_body_filter import Calibrated, LowerBodyFilter, Row
 from services.estimation.parameters import EstimationParameters
-from services.estimation.samples import TickBatch
+from services.estimation.samples import Tick, TickBatch
 from services.flow.message import Message, Output, Stream
 from services.flow.node import Node, State
 
@@ -23,8 +26,8 @@ MODEL = "lower_body"
 class EstimationNode:
     """One session: waits for standing, finds the axes in the first steps, then estimates.
 
-    Every imu message from the start of the walk leads to one joint_state and one rhythm message, those before the
-    calibration all at once when it stands; an imu message without any usable sample leads to none.
+    Every sample from the start of the walk leads to one row of joint_state and rhythm, those before the calibration
+    all at once when it stands. The numbers do not depend on how the samples were batched into messages.
     """
 
     outputs: tuple[Signal, ...] = (CALIBRATION, JOINT_STATE, RHYTHM, LIVE_POSE)
@@ -61,12 +64,17 @@ class EstimationNode:
         return self._intake.checks.rejections()
 
     def _take(self, batch: TickBatch) -> list[Output]:
-        if self._filter is not None:
-            return self._estimate(self._filter, batch)
-        calibrated = self._calibrator.add(batch, self._intake.checks)
-        if calibrated is not None:
-            return self._start(calibrated)
-        return self._wait(batch)
+        """Until the calibration each tick is looked at by itself: how samples were batched must decide nothing."""
+        outputs: list[Output] = []
+        ticks = deque(batch.ticks)
+        while ticks and self._filter is None:
+            tick = ticks.popleft()
+            calibrated = self._calibrator.add(TickBatch(tick.captured_ns, (tick,)), self._intake.checks)
+            if calibrated is not None:
+                outputs += self._start(calibrated)
+        if self._filter is None:
+            return self._wait(batch)
+        return outputs + self._estimate(self._filter, ticks)
 
     def _wait(self, batch: TickBatch) -> list[Output]:
         if not self._is_live_due(batch.captured_ns):
@@ -86,7 +94,7 @@ class EstimationNode:
         kept = self._calibrator.batches
         outputs = [Output(CALIBRATION, kept[0].captured_ns, self._describe(calibrated))]
         while kept:
-            outputs += self._estimate(self._filter, kept.pop(0))
+            outputs += self._estimate(self._filter, kept.pop(0).ticks)
         return outputs
 
     def _new_filter(self, calibrated: Calibrated) -> LowerBodyFilter:
@@ -114,16 +122,19 @@ class EstimationNode:
             sensors=sensors,
         )
 
-    def _estimate(self, running: LowerBodyFilter, batch: TickBatch) -> list[Output]:
-        """Joint states, rhythm and, when its time has come, the picture."""
-        if not batch.ticks:
-            return []
-        rows = [running.fuse(tick) for tick in batch.ticks]
-        return [
-            Output(JOINT_STATE, batch.captured_ns, _joint_state(rows, running.valid)),
-            Output(RHYTHM, batch.captured_ns, _rhythm(rows)),
-            *self._picture(running, rows[-1]),
-        ]
+    def _estimate(self, running: LowerBodyFilter, ticks: Iterable[Tick]) -> list[Output]:
+        """Joint states with their rhythm, a message for each run of equal validity, and the picture when it is due."""
+        outputs: list[Output] = []
+        rows: list[Row] = []
+        valid: list[bool] = []
+        for tick in ticks:
+            row = running.fuse(tick)
+            if rows and running.valid != valid:
+                outputs += _estimates(rows, valid)
+                rows = []
+            rows.append(row)
+            valid = running.valid
+        return [*outputs, *_estimates(rows, valid), *self._picture(running, rows[-1])] if rows else []
 
     def _picture(self, running: LowerBodyFilter, row: Row) -> list[Output]:
         """The picture of the newest row, when its time has come. None while catching up: nobody could watch it."""
@@ -164,6 +175,11 @@ class EstimationNode:
             self._filter = self._new_filter(self._calibrated)
             self._filter.restore(state["filter"])
         self._next_live_ns = state["next_live_ns"]
+
+
+def _estimates(rows: list[Row], valid: list[bool]) -> list[Output]:
+    newest_ns = rows[-1].captured_ns
+    return [Output(JOINT_STATE, newest_ns, _joint_state(rows, valid)), Output(RHYTHM, newest_ns, _rhythm(rows))]
 
 
 def _joint_state(rows: list[Row], valid: list[bool]) -> JointState:

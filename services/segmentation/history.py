@@ -1,6 +1,8 @@
 """The last seconds of joint coordinates: what a stride is cut from."""
 
+from bisect import bisect_left, bisect_right
 from dataclasses import dataclass, field
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -21,7 +23,7 @@ class Batch:
     captured_ns: NDArray[np.int64]  # (n,)
     position: Array  # (n, 15) rad
     phase: Array  # (n,) rad
-    position_std: Array  # (15,) rad, mean over the batch
+    position_std: Array  # (n, 15) rad
     valid: NDArray[np.bool_]  # (15,)
 
 
@@ -65,19 +67,28 @@ class Span:
 
 
 class History:
-    """Batches in order of time."""
+    """Samples in order of time. How many came in one message leaves no trace."""
 
     def __init__(self) -> None:
-        self._batches: list[Batch] = []
+        self._captured_ns: list[int] = []
+        self._phase: list[float] = []
+        self._position: list[Array] = []  # (15,) rad each
+        self._position_std: list[Array] = []  # (15,) rad each
+        self._valid: list[NDArray[np.bool_]] = []  # (15,) each
 
-    def append(self, batch: Batch) -> None:
-        """Add the newest batch."""
-        self._batches.append(batch)
+    def append(self, batch: Batch, row: int) -> None:
+        """Add the newest sample: one row of a batch."""
+        self._captured_ns.append(int(batch.captured_ns[row]))
+        self._phase.append(float(batch.phase[row]))
+        self._position.append(batch.position[row])
+        self._position_std.append(batch.position_std[row])
+        self._valid.append(batch.valid)
 
     def forget_before(self, captured_ns: int) -> None:
-        """Drop the batches that end before a time, except the last of them."""
-        while len(self._batches) > 1 and self._batches[1].captured_ns[0] < captured_ns:
-            self._batches.pop(0)
+        """Drop the samples before a time, except the last of them."""
+        old = max(bisect_left(self._captured_ns, captured_ns) - 1, 0)
+        for column in self._columns():
+            del column[:old]
 
     def at(self, captured_ns: int) -> Instant | None:
         """The body at a time within the history."""
@@ -90,50 +101,39 @@ class History:
 
     def between(self, start_ns: int, end_ns: int) -> Span | None:
         """Samples of a span with one more at each end; None when the history does not reach that far."""
-        begin = sum(batch.captured_ns[0] <= start_ns for batch in self._batches) - 1
-        stop = sum(batch.captured_ns[-1] < end_ns for batch in self._batches) + 1
-        if begin < 0 or stop > len(self._batches):
+        first = bisect_right(self._captured_ns, start_ns) - 1
+        last = bisect_left(self._captured_ns, end_ns) + 1
+        if first < 0 or last > len(self._captured_ns):
             return None
-        kept = self._batches[begin:stop]
-        captured_ns = np.concatenate([batch.captured_ns for batch in kept])
-        # One sample outside the span at either end, so that its ends can be interpolated.
-        first = int(np.searchsorted(captured_ns, start_ns, side="right")) - 1
-        last = int(np.searchsorted(captured_ns, end_ns, side="left")) + 1
-        position = np.concatenate([batch.position for batch in kept])[first:last]
+        position = np.array(self._position[first:last])
         position[:, HEADING] = np.unwrap(position[:, HEADING])
         return Span(
             start_ns,
             end_ns,
-            captured_ns[first:last],
+            np.array(self._captured_ns[first:last], dtype=np.int64),
             position,
-            np.concatenate([batch.phase for batch in kept])[first:last],
-            np.mean([batch.position_std for batch in kept], axis=0),
-            np.all([batch.valid for batch in kept], axis=0),
+            np.array(self._phase[first:last]),
+            np.mean(self._position_std[first:last], axis=0),
+            np.all(self._valid[first:last], axis=0),
         )
 
+    def _columns(self) -> tuple[list[Any], ...]:
+        return self._captured_ns, self._phase, self._position, self._position_std, self._valid
+
     def snapshot(self) -> State:
-        """All batches, their arrays joined."""
-        batches = self._batches
+        """All samples, column by column."""
         return {
-            "lengths": [len(batch.captured_ns) for batch in batches],
-            "captured_ns": [int(ns) for batch in batches for ns in batch.captured_ns],
-            "position": pack_array(np.array([row for batch in batches for row in batch.position]).reshape(-1, DOFS)),
-            "phase": pack_array(np.array([value for batch in batches for value in batch.phase])),
-            "position_std": pack_array(np.array([batch.position_std for batch in batches]).reshape(-1, DOFS)),
-            "valid": ["".join("1" if value else "0" for value in batch.valid) for batch in batches],
+            "captured_ns": list(self._captured_ns),
+            "phase": pack_array(np.array(self._phase)),
+            "position": pack_array(np.array(self._position).reshape(-1, DOFS)),
+            "position_std": pack_array(np.array(self._position_std).reshape(-1, DOFS)),
+            "valid": ["".join("1" if value else "0" for value in valid) for valid in self._valid],
         }
 
     def restore(self, state: State) -> None:
         """Inverse of `snapshot`."""
-        if not state["lengths"]:
-            self._batches = []
-            return
-        cuts = np.cumsum(state["lengths"])[:-1]
-        columns = (
-            np.split(np.array(state["captured_ns"], dtype=np.int64), cuts),
-            np.split(unpack_array(state["position"]), cuts),
-            np.split(unpack_array(state["phase"]), cuts),
-            unpack_array(state["position_std"]),
-            np.array([[digit == "1" for digit in digits] for digits in state["valid"]]),
-        )
-        self._batches = [Batch(*row) for row in zip(*columns, strict=True)]
+        self._captured_ns = list(state["captured_ns"])
+        self._phase = unpack_array(state["phase"]).tolist()
+        self._position = list(unpack_array(state["position"]))
+        self._position_std = list(unpack_array(state["position_std"]))
+        self._valid = [np.array([digit == "1" for digit in digits]) for digits in state["valid"]]

@@ -56,7 +56,7 @@ class Intake:
         self._newest_ns = int(captured_ns[use][-1])
         position, velocity, std = tables[:, use]
         phase = self._phase(rhythm, rows)[use]
-        return Batch(captured_ns[use], position, phase, std.mean(axis=0), np.array(joints.valid)), velocity
+        return Batch(captured_ns[use], position, phase, std, np.array(joints.valid)), velocity
 
     def _phase(self, rhythm: Rhythm | None, rows: int) -> Array:
         if rhythm is None:

@@ -64,15 +64,14 @@ class SegmentationNode:
         if kept is None:
             return []
         batch, velocity = kept
-        begin_ns = int(batch.captured_ns[0]) if self._last_ns is None else self._last_ns
-        self._history.append(batch)
         motion = leg_motion(batch.position, velocity, self._body)
         seen = [bool(batch.valid[_SEEN_BY[side]].all()) for side in SIDES]
         outputs: list[Output] = []
         for i, captured_ns in enumerate(batch.captured_ns.tolist()):
+            if self._last_ns is not None and captured_ns // SECOND_NS != self._last_ns // SECOND_NS:
+                self._strides.forget(captured_ns)
+            self._history.append(batch, i)
             outputs += self._sample(captured_ns, motion.shank_rate[i].tolist(), motion.ankle[0, i].tolist(), seen)
-        if int(batch.captured_ns[-1]) // SECOND_NS != begin_ns // SECOND_NS:
-            self._strides.forget(int(batch.captured_ns[-1]))
         return outputs
 
     def _sample(self, captured_ns: int, rates: list[float], forward: list[float], seen: list[bool]) -> list[Output]:

@@ -6,7 +6,9 @@ from functools import cache
 import pytest
 
 from schemas.checkpoint import Checkpoint
-from schemas.kinematics import JointState, LivePose
+from schemas.gait import GaitEvent, Stride
+from schemas.kinematics import Calibration, JointState, LivePose
+from schemas.metrics import SessionMetrics
 from schemas.vocabulary import LOWER_BODY, SensorState
 from services.cli.assembly import build_chain
 from services.faults.faults import Duplicated, HubGap, Reordered, SensorOff, SensorStuck, Spike
@@ -93,6 +95,27 @@ def test_every_node_resumes_from_its_checkpoint_to_the_bit(split_s):
                 host.resume(Checkpoint.model_validate_json(text))
         produced += chain.push(message)
     assert lines(produced) == lines(undisturbed())
+
+
+def samples_of(produced: list[Message]) -> dict[str, list]:
+    """What was said, with the rows of joint_state laid end to end."""
+    said: dict[str, list] = {}
+    for message in produced:
+        match message.payload:
+            case JointState() as state:
+                table = zip(state.captured_ns, state.position, state.position_std, state.velocity, strict=True)
+                said.setdefault("joint_state", []).extend(table)
+            case Stride() | GaitEvent() | Calibration() | SessionMetrics() as payload:
+                said.setdefault(message.stream.name, []).append(payload)
+    return said
+
+
+@pytest.mark.parametrize("ticks", [2, 5])
+def test_how_samples_share_messages_changes_no_number(ticks):
+    """Ingest puts more ticks into a message when the machine is busy."""
+    batched = imu_only(iter_messages(open_source(WALK), ticks))
+    assert len(batched) < len(imu_only(recorded()[1])) / (ticks - 0.5)
+    assert samples_of(run(batched)) == samples_of(list(undisturbed()))
 
 
 FAULTS = {

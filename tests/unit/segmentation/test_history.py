@@ -8,6 +8,11 @@ from services.segmentation.history import DOFS, HEADING, Batch, History
 TICK = 10_000_000
 
 
+def append_all(history: History, batch: Batch) -> None:
+    for row in range(len(batch.captured_ns)):
+        history.append(batch, row)
+
+
 def filled(batches: int = 20, size: int = 5) -> History:
     history = History()
     for number in range(batches):
@@ -16,7 +21,7 @@ def filled(batches: int = 20, size: int = 5) -> History:
         valid = np.ones(DOFS, dtype=bool)
         valid[4] = number != 3
         phase = np.where(steps < 10, np.nan, 0.1 * steps)
-        history.append(Batch(steps * TICK, position, phase, np.full(DOFS, 0.01 * number), valid))
+        append_all(history, Batch(steps * TICK, position, phase, np.full((size, DOFS), 0.01 * number), valid))
     return history
 
 
@@ -56,7 +61,8 @@ def test_heading_is_unwrapped():
     steps = np.arange(100)
     position = np.zeros((100, DOFS))
     position[:, HEADING] = np.angle(np.exp(1j * (3.0 + 0.01 * steps)))
-    history.append(Batch(steps * TICK, position, np.zeros(100), np.zeros(DOFS), np.ones(DOFS, dtype=bool)))
+    still = np.zeros((100, DOFS))
+    append_all(history, Batch(steps * TICK, position, np.zeros(100), still, np.ones(DOFS, dtype=bool)))
     curve = history.between(0, 99 * TICK).curve(HEADING)
     assert curve[-1] - curve[0] == pytest.approx(0.99)
 

@@ -25,7 +25,9 @@ def assembler(turns_per_s: float | None = 1.0, heading_rate: float = 0.0, second
     position = np.zeros((len(steps), DOFS))
     position[:, HEADING] = heading_rate * steps / 100
     phase = np.full(len(steps), np.nan) if turns_per_s is None else 2 * np.pi * turns_per_s * steps / 100
-    history.append(Batch(steps * 10_000_000, position, phase, np.zeros(DOFS), np.ones(DOFS, dtype=bool)))
+    batch = Batch(steps * 10_000_000, position, phase, np.zeros((len(steps), DOFS)), np.ones(DOFS, dtype=bool))
+    for row in range(len(steps)):
+        history.append(batch, row)
     return StrideAssembler(PARAMETERS, BODY, history)
 
 
