@@ -1,0 +1,50 @@
+"""Back to the plain filter when the sensors contradict the rhythm (named as future work by Joukov et al.).
+
+A plain filter runs beside the rhythmic one on the same samples. With s the normalised innovation squared of each,
+
+    d = s_plain - s_rhythmic,   t = <d> / sqrt(<d^2> / n)
+
+over a sliding memory of n samples is how sure the samples are that the rhythm predicts better (t > 0) or worse. The
+estimate goes over to the plain filter as t falls from `doubt` to `refusal`, and back when it rises again, which it
+can because the rhythmic filter goes on by itself in the meantime.
+"""
+
+from dataclasses import dataclass
+from math import sqrt
+
+import numpy as np
+from numpy.typing import NDArray
+
+from services.biomech.rhythm.phase_loop import clip
+from services.biomech.single_joint.compiled import compiled
+
+FloatArray = NDArray[np.float64]
+
+MEAN, POWER = range(2)
+"""Slots of the evidence (2,), no unit."""
+
+
+@dataclass(frozen=True)
+class InnovationGate:
+    """Tunables of the fall-back."""
+
+    memory_s: float = 1.0
+    """s of the sliding mean."""
+    doubt: float = -0.5
+    """t below which the rhythm loses weight."""
+    refusal: float = -1.5
+    """t at which it has none."""
+
+
+@compiled
+def rhythm_share(
+    evidence: FloatArray, plain: float, rhythmic: float, dt_s: float, memory_s: float, doubt: float, refusal: float
+) -> float:
+    """Weight of the rhythmic estimate, 0 to 1, from both normalised innovations squared; follows the evidence."""
+    difference = plain - rhythmic
+    gain = dt_s / memory_s
+    evidence[MEAN] += gain * (difference - evidence[MEAN])
+    evidence[POWER] += gain * (difference * difference - evidence[POWER])
+    # An exponential mean with gain k weighs as much as 2 / k samples.
+    sureness = evidence[MEAN] / sqrt(evidence[POWER] * gain / 2.0 + 1e-12)
+    return clip((sureness - refusal) / (doubt - refusal), 0.0, 1.0)
