@@ -27,7 +27,7 @@ def run_stack(*, demo: bool, seconds: float | None) -> int:
         stack.wait_until_ready(timeout_s=180)
         out.print(f"\n  Open  [bold]{GatewaySettings().url}[/bold]  in a browser. Ctrl-C stops everything.\n")
         if demo:
-            _start_demo(settings)
+            _start_demo(stack.settings)
         stack.run(seconds)
     return 0
 

@@ -91,7 +91,9 @@ class BusFeed:
         bus.close()
 
     def _take_pose(self, received: Received) -> None:
-        self._live.pose(received.key.split("/")[SESSION_WORD], received.payload)
+        # The end of the stream has no payload.
+        if received.payload:
+            self._live.pose(received.key.split("/")[SESSION_WORD], received.payload)
 
     def _take_health(self, received: Received) -> None:
         self._live.health.record(Health.model_validate_json(received.payload))
