@@ -27,6 +27,15 @@ def rhythm(json_path: Path | None = None) -> Scoreboard:
     return run(json_path)
 
 
+def joukov(json_path: Path | None = None, motions: str = "100", report: Path | None = None) -> Scoreboard:
+    """The Rhythmic EKF against the plain one: the published simulation and the curve over the process noise."""
+    from services.bench.joukov import run
+
+    if not motions.isdecimal():
+        raise ValueError(f"joukov takes a number of motions, e.g. 100, not {motions!r}")
+    return run(json_path, int(motions), report)
+
+
 def recovery(json_path: Path | None = None) -> Scoreboard:
     """What a kill of the archive costs, before and after its restart, and what a flush costs."""
     from services.bench.recovery import run
@@ -43,6 +52,7 @@ def strides(json_path: Path | None = None, *subject: str) -> Scoreboard:
 
 SCOREBOARDS: dict[str, Callable[..., Scoreboard]] = {
     "accuracy": accuracy,
+    "joukov": joukov,
     "recovery": recovery,
     "rhythm": rhythm,
     "step": step,

@@ -1,5 +1,6 @@
 """The ambula command."""
 
+import inspect
 from pathlib import Path
 from typing import Annotated
 
@@ -99,6 +100,7 @@ def bench(
     subject: Annotated[str | None, typer.Argument(help="what to measure it on, e.g. neura")] = None,
     json_path: Annotated[Path | None, typer.Option("--json", help="also write the rows to this file")] = None,
     details: Annotated[bool, typer.Option("--all", help="print every row, e.g. each side by itself")] = False,
+    report: Annotated[Path | None, typer.Option(help="folder for a report with charts, where there is one")] = None,
 ) -> None:
     """Measure a claim and print it beside its target and its baseline."""
     from services.bench.registry import SCOREBOARDS
@@ -111,7 +113,10 @@ def bench(
         raise typer.Exit(name is not None)
     board = SCOREBOARDS[name]
     with told(ValueError, OSError):
-        result = board(json_path) if subject is None else board(json_path, subject)
+        if report is not None and "report" not in inspect.signature(board).parameters:
+            raise ValueError(f"{name} writes no report; leave --report out, --json writes its rows")
+        options = {} if report is None else {"report": report}
+        result = board(json_path, *([] if subject is None else [subject]), **options)
         result.print(details=details)
 
 
