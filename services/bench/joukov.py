@@ -86,7 +86,7 @@ def _rows(sweeps: dict[str, list[SweepStudy]], studies: dict[str, list[Study]]) 
     ekf, rhythmic = PUBLISHED_DEG
     rows = [informative("as published, one motion: position", rhythmic, "deg", ekf)]
     for name, sweep in sweeps.items():
-        rows += simulation_rows(name, sweep)
+        rows += simulation_rows(name, sweep, detail=HOLD_S[name] > 0.0)
     for kind, study in studies.items():
         rows += curve_rows(kind, study)
     return rows

@@ -1,7 +1,7 @@
 """The published simulation (section IV-A, figures 4-6) over many motions: errors, lock, error against jerk."""
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
@@ -102,14 +102,15 @@ def lag_ms(bins: JerkBins) -> float:
     return -bins.product / bins.jerk_square * 1e3
 
 
-def simulation_rows(case: str, studies: Sequence[SweepStudy]) -> list[Row]:
-    """Rows of one reading of the simulation; baseline: the plain EKF."""
-    return [
+def simulation_rows(case: str, studies: Sequence[SweepStudy], *, detail: bool = False) -> list[Row]:
+    """Rows of one reading of the simulation; baseline: the plain EKF. `detail`: none of them is a main row."""
+    rows = [
         *_error_rows(case, studies),
         *_lock_rows(case, studies),
         *_lag_rows(case, studies),
         *_jerk_rows(case, studies),
     ]
+    return [replace(row, detail=True) for row in rows] if detail else rows
 
 
 def median_error(studies: Sequence[SweepStudy], name: str, tenth: bool = False) -> FloatArray:
