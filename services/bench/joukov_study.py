@@ -17,7 +17,7 @@ from services.bench.rhythm_motions import INTERVAL_S
 from services.biomech.rhythm.parameters import JoukovParameters, TrustedParameters
 from services.biomech.single_joint.adaptive_noise import AdaptiveNoise
 from services.biomech.single_joint.innovation_gate import InnovationGate
-from services.biomech.single_joint.rhythmic import Track, track_plain, track_published, track_trusted
+from services.biomech.single_joint.rhythmic import NO_GATE, Track, track_plain, track_published, track_trusted
 
 FloatArray = NDArray[np.float64]
 Filter = Callable[[JointMotion, float], Track]
@@ -66,10 +66,11 @@ CURVES: dict[str, Filter] = {
 }
 """Filters that are run at every S. "trusted" has 10 harmonics."""
 OPTIONS: dict[str, Filter] = {
-    "ungated": partial(_trusted, parameters=UNGATED),
-    "innovation gate alone": partial(_trusted, parameters=UNGATED, gate=InnovationGate()),
-    "innovation gate": partial(_trusted, parameters=TEN, gate=InnovationGate()),
+    "no gate at all": partial(_trusted, parameters=UNGATED, gate=NO_GATE),
+    "quality gate alone": partial(_trusted, parameters=TEN, gate=NO_GATE),
+    "innovation gate alone": partial(_trusted, parameters=UNGATED),
     "adaptive noise": partial(_trusted, parameters=TEN, noise=AdaptiveNoise()),
+    "adaptive noise, quality gate alone": partial(_trusted, parameters=TEN, noise=AdaptiveNoise(), gate=NO_GATE),
 }
 """Filters that are run at S* and S*/10."""
 SWEEP_CURVES: dict[str, Filter] = {

@@ -14,7 +14,7 @@ interval as well, as the process noise does.
 """
 
 from dataclasses import dataclass
-from math import cos, isfinite, sin
+from math import cos, isfinite, log, sin
 from typing import NamedTuple
 
 import numpy as np
@@ -104,7 +104,7 @@ def predict_covariance(P: FloatArray, jerk_density: float, dt_s: float) -> None:
 
 @compiled
 def fuse_row(x: FloatArray, P: FloatArray, h: FloatArray, innovation: float, variance: float) -> float:
-    """One scalar measurement with Jacobian h (3,); its innovation squared over its variance."""
+    """One scalar measurement with Jacobian h (3,); returns the variance of its innovation."""
     ph_0 = P[0, 0] * h[0] + P[0, 1] * h[1] + P[0, 2] * h[2]
     ph_1 = P[1, 0] * h[0] + P[1, 1] * h[1] + P[1, 2] * h[2]
     ph_2 = P[2, 0] * h[0] + P[2, 1] * h[1] + P[2, 2] * h[2]
@@ -114,13 +114,16 @@ def fuse_row(x: FloatArray, P: FloatArray, h: FloatArray, innovation: float, var
         x[r] += ph[r] * innovation / s
         for c in range(3):
             P[r, c] -= ph[r] * ph[c] / s
-    surprise: float = innovation * innovation / s
-    return surprise
+    variance_seen: float = s
+    return variance_seen
 
 
 @compiled
-def fuse_sample(joint: JointState, sample: FloatArray, variances: FloatArray, offset_m: float) -> float:
-    """Fuse gyro, radial and tangential acceleration; returns the normalised innovation squared.
+def fuse_sample(joint: JointState, sample: FloatArray, variances: FloatArray, offset_m: float) -> tuple[float, float]:
+    """Fuse gyro, radial and tangential acceleration.
+
+    Returns the normalised innovation squared and the logarithm of the determinant of the innovation covariance; their
+    sum is -2 log likelihood of the sample, up to a constant.
 
     One row after the other, all linearised at the predicted state, which gives the same as all at once.
     Components that are not finite are left out.
@@ -128,12 +131,15 @@ def fuse_sample(joint: JointState, sample: FloatArray, variances: FloatArray, of
     x, P, z, H = joint
     predict_sample(x, offset_m, z, H)
     before_0, before_1, before_2 = x[0], x[1], x[2]
-    surprise = 0.0
+    squared, log_determinant = 0.0, 0.0
     for i in range(3):
         if isfinite(sample[i]):
             moved = H[i, 0] * (x[0] - before_0) + H[i, 1] * (x[1] - before_1) + H[i, 2] * (x[2] - before_2)
-            surprise += fuse_row(x, P, H[i], sample[i] - z[i] - moved, variances[i])
-    return surprise
+            innovation = sample[i] - z[i] - moved
+            variance = fuse_row(x, P, H[i], innovation, variances[i])
+            squared += innovation * innovation / variance
+            log_determinant += log(variance)
+    return squared, log_determinant
 
 
 @compiled
@@ -145,8 +151,8 @@ def advance_joint(
     jerk_density: float,
     variances: FloatArray,
     offset_m: float,
-) -> float:
-    """Predict over dt_s with the expected jerk, fuse the sample; the normalised innovation squared."""
+) -> tuple[float, float]:
+    """Predict over dt_s with the expected jerk, fuse the sample; returns as `fuse_sample`."""
     predict_state(joint.x, jerk, dt_s)
     predict_covariance(joint.P, jerk_density, dt_s)
     return fuse_sample(joint, sample, variances, offset_m)
@@ -182,6 +188,7 @@ class SingleJointEkf:
         Returns:
             Normalised innovation squared; its mean is 3 where the filter's noise is right.
         """
-        return float(
-            advance_joint(self._joint, sample, dt_s, jerk, self.jerk_density, self._variances, self.sensor.offset_m)
+        squared, _ = advance_joint(
+            self._joint, sample, dt_s, jerk, self.jerk_density, self._variances, self.sensor.offset_m
         )
+        return float(squared)

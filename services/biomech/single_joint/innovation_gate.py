@@ -1,12 +1,16 @@
 """Back to the plain filter when the sensors contradict the rhythm (named as future work by Joukov et al.).
 
-A plain filter runs beside the rhythmic one on the same samples. With s the normalised innovation squared of each,
+A simpler filter runs beside a bolder one on the same samples: plain beside rhythmic. With s = e' inv(C) e + log det C
+of each, e the innovation and C its covariance (twice the negative log likelihood of the sample),
 
-    d = s_plain - s_rhythmic,   t = <d> / sqrt(<d^2> / n)
+    d = s_simple - s_bold,   t = <d> / sqrt(<d^2> / n)
 
-over a sliding memory of n samples is how sure the samples are that the rhythm predicts better (t > 0) or worse. The
-estimate goes over to the plain filter as t falls from `doubt` to `refusal`, and back when it rises again, which it
-can because the rhythmic filter goes on by itself in the meantime.
+over a sliding memory of n samples is how sure the samples are that the bolder filter predicts better (t > 0) or worse.
+The estimate goes over to the simple filter as t falls from `doubt` to `refusal`, and back when it rises again, which
+it can because the bolder filter goes on by itself in the meantime.
+
+Where both have the same process noise their covariances and gains are all but the same, so that in a large filter the
+second one need be no more than a second state.
 """
 
 from dataclasses import dataclass
@@ -30,18 +34,18 @@ class InnovationGate:
 
     memory_s: float = 1.0
     """s of the sliding mean."""
-    doubt: float = -0.5
-    """t below which the rhythm loses weight."""
-    refusal: float = -1.5
+    doubt: float = 0.5
+    """t below which the rhythm loses weight. With it above 0 the rhythm has to earn its place."""
+    refusal: float = -0.5
     """t at which it has none."""
 
 
 @compiled
-def rhythm_share(
-    evidence: FloatArray, plain: float, rhythmic: float, dt_s: float, memory_s: float, doubt: float, refusal: float
+def bold_share(
+    evidence: FloatArray, simple: float, bold: float, dt_s: float, memory_s: float, doubt: float, refusal: float
 ) -> float:
-    """Weight of the rhythmic estimate, 0 to 1, from both normalised innovations squared; follows the evidence."""
-    difference = plain - rhythmic
+    """Weight of the bolder estimate, 0 to 1, from s of both filters; follows the evidence."""
+    difference = simple - bold
     gain = dt_s / memory_s
     evidence[MEAN] += gain * (difference - evidence[MEAN])
     evidence[POWER] += gain * (difference * difference - evidence[POWER])

@@ -14,13 +14,14 @@ from services.biomech.rhythm.parameters import JoukovParameters, TrustedParamete
 from services.biomech.single_joint.adaptive_noise import AdaptiveNoise, noise_share
 from services.biomech.single_joint.compiled import compiled
 from services.biomech.single_joint.ekf import VELOCITY, JointSensor, JointState, advance_joint, start_joint
-from services.biomech.single_joint.innovation_gate import InnovationGate, rhythm_share
+from services.biomech.single_joint.innovation_gate import InnovationGate, bold_share
 
 FloatArray = NDArray[np.float64]
 
 SENSOR = JointSensor()
-NEVER = InnovationGate(doubt=-1e9, refusal=-2e9)
-CONSTANT = AdaptiveNoise(floor=1.0)
+GATE = InnovationGate()
+NO_GATE = InnovationGate(doubt=-1e9, refusal=-2e9)
+CONSTANT_NOISE = AdaptiveNoise(floor=1.0)
 
 
 @dataclass(frozen=True)
@@ -74,8 +75,7 @@ def _run_published(
 
 @compiled
 def _run_trusted(
-    plain: JointState,
-    joint: JointState,
+    filters: tuple[JointState, JointState, JointState],
     memory: Memory,
     bench: Bench,
     samples: FloatArray,
@@ -88,19 +88,29 @@ def _run_trusted(
     state: FloatArray,
     rhythm: FloatArray,
 ) -> None:
+    """From plain over rhythmic to rhythmic with less process noise, each as far as the innovations agree."""
+    plain, rhythmic, bold = filters
     loop, channel, parameters = memory.loop[0], memory.channels[0], bench.parameters[0]
-    powers, evidence, velocity = np.zeros(3), np.zeros(2), np.zeros(1)
-    scale = 1.0
+    powers, evidence, evidence_bold, velocity = np.zeros(3), np.zeros(2), np.zeros(2), np.zeros(1)
+    share, is_adaptive = 1.0, noise[1] < 1.0
     for i in range(samples.shape[0]):
-        surprise = advance_joint(plain, samples[i], dt_s, 0.0, density, variances, offset_m)
-        rhythmic = advance_joint(joint, samples[i], dt_s, bench.jerk[0], scale * density, variances, offset_m)
-        share = rhythm_share(evidence, surprise, rhythmic, dt_s, gate[0], gate[1], gate[2])
+        jerk = bench.jerk[0]
+        squared, log_det = advance_joint(plain, samples[i], dt_s, 0.0, density, variances, offset_m)
+        squared_r, log_det_r = advance_joint(rhythmic, samples[i], dt_s, jerk, density, variances, offset_m)
+        weight = bold_share(evidence, squared + log_det, squared_r + log_det_r, dt_s, gate[0], gate[1], gate[2])
+        weight_bold = 0.0
+        if is_adaptive:
+            squared, log_det = advance_joint(bold, samples[i], dt_s, jerk, share * density, variances, offset_m)
+            weight_bold = weight * bold_share(
+                evidence_bold, squared_r + log_det_r, squared + log_det, dt_s, gate[0], gate[1], gate[2]
+            )
         for k in range(3):
-            state[i, k] = plain.x[k] + share * (joint.x[k] - plain.x[k])
+            state[i, k] = plain.x[k] + weight * (rhythmic.x[k] - plain.x[k])
+            state[i, k] += weight_bold * (bold.x[k] - rhythmic.x[k])
         velocity[0] = state[i, VELOCITY]
         trusted.advance(memory, bench, velocity, dt_s)
         trusted.read(loop, rhythm[i])
-        scale = noise_share(powers, loop, channel, dt_s, noise[0], noise[1], noise[2], parameters)
+        share = noise_share(powers, loop, channel, dt_s, noise[0], noise[1], noise[2], parameters)
 
 
 def track_plain(samples: FloatArray, dt_s: float, jerk_density: float, sensor: JointSensor = SENSOR) -> Track:
@@ -137,14 +147,14 @@ def track_trusted(
     dt_s: float,
     jerk_density: float,
     parameters: TrustedParameters,
-    noise: AdaptiveNoise = CONSTANT,
-    gate: InnovationGate = NEVER,
+    noise: AdaptiveNoise = CONSTANT_NOISE,
+    gate: InnovationGate = GATE,
     sensor: JointSensor = SENSOR,
 ) -> Track:
-    """The EKF with the jerk of `TrustedRhythm`; `noise` and `gate` are options that are off by default."""
+    """The EKF with the jerk of `TrustedRhythm`; `noise` is an option that is off by default."""
     state, rhythm = np.empty((samples.shape[0], 3)), np.zeros((samples.shape[0], 4))
     _run_trusted(
-        start_joint(), start_joint(), allocate_memory(1, parameters), prepare_bench(1, parameters), samples, dt_s,
+        (start_joint(), start_joint(), start_joint()), allocate_memory(1, parameters), prepare_bench(1, parameters), samples, dt_s,
         jerk_density, sensor.variances, sensor.offset_m, (noise.factor, noise.floor, noise.periods),
         (gate.memory_s, gate.doubt, gate.refusal), state, rhythm,
     )  # fmt: skip

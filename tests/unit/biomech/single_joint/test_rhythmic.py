@@ -8,8 +8,8 @@ from services.bench.joukov_study import GRID, SWEEPING, TEN, rmse
 from services.biomech.rhythm.parameters import JoukovParameters, TrustedParameters
 from services.biomech.single_joint.adaptive_noise import AdaptiveNoise
 from services.biomech.single_joint.ekf import SingleJointEkf
-from services.biomech.single_joint.innovation_gate import InnovationGate, rhythm_share
-from services.biomech.single_joint.rhythmic import track_plain, track_published, track_trusted
+from services.biomech.single_joint.innovation_gate import InnovationGate, bold_share
+from services.biomech.single_joint.rhythmic import NO_GATE, track_plain, track_published, track_trusted
 
 DT_S, DENSITY = 0.01, 100.0
 
@@ -61,10 +61,10 @@ def test_evidence_closes_and_opens_the_gate():
 
     def shares(plain: float, rhythmic: float) -> list[float]:
         return [
-            rhythm_share(evidence, plain, rhythmic, DT_S, gate.memory_s, gate.doubt, gate.refusal) for _ in range(300)
+            bold_share(evidence, plain, rhythmic, DT_S, gate.memory_s, gate.doubt, gate.refusal) for _ in range(300)
         ]
 
-    assert shares(3.0, 3.0) == [1.0] * 300
+    assert shares(3.0, 3.0) == [0.5] * 300
     worse = shares(3.0, 3.5)
     assert worse[-1] == 0.0
     assert shares(3.5, 3.0)[-1] == 1.0
@@ -74,8 +74,8 @@ def test_innovation_gate_undoes_a_rhythm_that_is_wrong():
     motion = smooth(102)
     believing = TrustedParameters(harmonics=10, quality_for_jerk=-1.0)
     plain = rmse(motion, track_plain(motion.samples, DT_S, 10.0))
-    wrong = rmse(motion, track_trusted(motion.samples, DT_S, 10.0, believing)) / plain
-    gated = rmse(motion, track_trusted(motion.samples, DT_S, 10.0, believing, gate=InnovationGate())) / plain
+    wrong = rmse(motion, track_trusted(motion.samples, DT_S, 10.0, believing, gate=NO_GATE)) / plain
+    gated = rmse(motion, track_trusted(motion.samples, DT_S, 10.0, believing)) / plain
     assert wrong.max() > 1.05
     assert gated.max() < 1.02
 
