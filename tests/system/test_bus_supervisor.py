@@ -70,7 +70,8 @@ def test_a_signal_stops_everything(number: signal.Signals):
     stack, pids = start_stack("metrics")
     stack.send_signal(number)
     out, _ = stack.communicate(timeout=15)
-    assert out.splitlines()[-1] == "stopped"
+    # The children's last words are passed on by threads and may come after it.
+    assert "stopped" in out.splitlines()
     assert stack.returncode == 0
     assert not any(is_running(pid) for pid in pids)
 
