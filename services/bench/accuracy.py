@@ -1,26 +1,21 @@
-"""Joint angles of a recorded walk against optical motion capture, through the same nodes as live."""
+"""Joint angles against optical motion capture, through the same nodes as live."""
 
-from collections.abc import Callable
 from pathlib import Path
-from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
-from schemas.kinematics import JointState
 from schemas.session import SessionDescription
-from schemas.signals import JOINT_STATE
-from schemas.vocabulary import ESTIMATORS, LOWER_BODY, Side
+from schemas.vocabulary import ESTIMATORS, Side
+from services.bench import accuracy_knee
+from services.bench.joint_scores import Score, best_score, column_of, estimate_angles, score
 from services.bench.neura_truth import NeuraTruth, collect_truth
 from services.bench.scoreboard import Row, Scoreboard, at_most, informative
 from services.bench.vqf_hinge import is_installed, vqf_hinge_angles
 from services.biomech.lower_body_ekf import MeasurementModel, NoiseModel
-from services.estimation.node import EstimationNode, build
+from services.estimation.node import EstimationNode
 from services.estimation.parameters import EstimationParameters, FilterParameters
-from services.flow.chain import Chain
-from services.flow.host import HostedNode
 from services.flow.node import Node
-from services.ingest.source import iter_messages, open_source
 
 Array = NDArray[np.float64]
 
@@ -29,8 +24,6 @@ Baseline: VQF per sensor with headings tied at the joints. The truths themselves
 (left knee) deg rms; one person and two or three strides each way: differences below 0.2 deg mean nothing."""
 
 RECORDINGS = {"neura": "neura_s02_walk", "neura_midshank": "neura_s02_walk_midshank"}
-SHIFTS = range(-3, 4)
-"""Samples that one constant shift between the clocks of sensors and cameras may have; the measured lag is 1-3."""
 FIXED_SHIFT = 0
 STRAIGHT = np.r_[1119:1454, 1651:2073]
 """Frames of the two straight passes."""
@@ -50,51 +43,6 @@ LITERAL = FilterParameters(
 """The measurement model as published: full Jacobian, dynamic accelerometer, hinge knees, yaw against the world."""
 
 
-class Score(NamedTuple):
-    """Agreement of one angle with one truth."""
-
-    offset_removed_deg: float
-    absolute_deg: float
-    correlation: float
-    shift: int
-
-
-def score(estimate: Array, truth: Array, frames: NDArray[np.int64], shift: int) -> Score:
-    """Compare estimate sample i + shift with truth sample i, both (n,) in degrees."""
-    error = estimate[frames + shift] - truth[frames]
-    return Score(
-        float(np.std(error)),
-        float(np.sqrt(np.mean(error**2))),
-        float(np.corrcoef(estimate[frames + shift], truth[frames])[0, 1]),
-        shift,
-    )
-
-
-def best_score(estimate: Array, truth: Array, frames: NDArray[np.int64]) -> Score:
-    """`score` at the constant shift that agrees best."""
-    return min((score(estimate, truth, frames, shift) for shift in SHIFTS), key=lambda s: s.offset_removed_deg)
-
-
-def estimate_angles(spec: str, estimator: str, build_node: Callable[[SessionDescription], Node] = build) -> Array:
-    """Joint angles (frames, 15) in degrees through ingest and node, NaN where there is none."""
-    source = open_source(spec, session="accuracy", estimator=estimator)
-    description = source.describe()
-    chain = Chain([HostedNode("estimation", description.session, build_node(description))])
-    rows: list[tuple[int, list[float]]] = []
-    for message in iter_messages(source):
-        for produced in chain.push(message):
-            if produced.stream.signal is JOINT_STATE and isinstance(produced.payload, JointState):
-                rows += zip(produced.payload.captured_ns, produced.payload.position, strict=True)
-    return _on_frames(rows)
-
-
-def _on_frames(rows: list[tuple[int, list[float]]]) -> Array:
-    frames = [round(captured_ns / 1e7) for captured_ns, _ in rows]
-    angles = np.full((max(frames, default=0) + 1, len(LOWER_BODY)), np.nan)
-    angles[frames] = np.degrees([position for _, position in rows])
-    return angles
-
-
 Figures = dict[tuple[str, str], dict[Side, Score]]
 """(truth, window) -> score of each side at its best shift."""
 
@@ -104,7 +52,7 @@ def figures(angles: Array, truth: NeuraTruth, *, fixed_shift: int | None = None)
     result: Figures = {}
     for window, frames in WINDOWS.items():
         for label, (joint, truths) in truth.by_label().items():
-            sides = {side: angles[:, _column(f"{joint}_flexion_{side}")] for side in Side}
+            sides = {side: angles[:, column_of(f"{joint}_flexion_{side}")] for side in Side}
             result[label, window] = {
                 side: best_score(estimate, truths[side], frames)
                 if fixed_shift is None
@@ -143,14 +91,13 @@ def estimator_rows(name: str, angles: Array, truth: NeuraTruth, baseline: Figure
     return rows
 
 
-def _column(name: str) -> int:
-    return next(i for i, dof in enumerate(LOWER_BODY) if dof.name == name)
-
-
 def run(json_path: Path | None = None, subject: str = "neura") -> Scoreboard:
     """Score all estimators. Raises ValueError for a subject that is not known."""
+    if subject in accuracy_knee.KNEES:
+        return accuracy_knee.run(subject, json_path)
     if subject not in RECORDINGS:
-        raise ValueError(f"accuracy is measured on {', '.join(RECORDINGS)}, not on {subject!r}")
+        known = ", ".join([*RECORDINGS, *accuracy_knee.KNEES])
+        raise ValueError(f"accuracy is measured on {known}, not on {subject!r}")
     spec = RECORDINGS[subject]
     truth = collect_truth(spec)
     baseline = figures(vqf_hinge_angles(spec), truth) if is_installed() else {}

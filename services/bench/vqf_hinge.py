@@ -40,15 +40,17 @@ def vqf_hinge_angles(spec: str) -> Array:
     R = {s.segment: _orientations(s, samples[s.sensor], rate_hz) for s in calibration.sensors}
     angles = np.full((len(next(iter(R.values()))), len(LOWER_BODY)), np.nan)
     for side in Side:
-        thigh, shank = R[Segment(f"thigh_{side}")], R[Segment(f"shank_{side}")]
-        hip = flexion_about_right(R[Segment.PELVIS], thigh, rate_hz)
-        knee = flexion_about_right(thigh, shank, rate_hz)
-        for i, dof in enumerate(LOWER_BODY):
-            if dof.name == f"hip_flexion_{side}":
-                angles[:, i] = np.degrees(hip)
-            if dof.name == f"knee_flexion_{side}":
-                angles[:, i] = -np.degrees(knee)
+        thigh, shank = R.get(Segment(f"thigh_{side}")), R.get(Segment(f"shank_{side}"))
+        if thigh is not None and Segment.PELVIS in R:
+            hip = flexion_about_right(R[Segment.PELVIS], thigh, rate_hz)
+            angles[:, _column(f"hip_flexion_{side}")] = np.degrees(hip)
+        if thigh is not None and shank is not None:
+            angles[:, _column(f"knee_flexion_{side}")] = -np.degrees(flexion_about_right(thigh, shank, rate_hz))
     return angles
+
+
+def _column(name: str) -> int:
+    return next(i for i, dof in enumerate(LOWER_BODY) if dof.name == name)
 
 
 def _read(spec: str) -> tuple[Calibration, dict[str, Array], float]:

@@ -59,6 +59,7 @@ class LowerBodyFilter:
         )
         self._segments = [sensor.segment for sensor in sensors]
         self._aligned = calibrated.alignment.aligned
+        self._worn = {segment for segment, aligned in zip(self._segments, self._aligned, strict=True) if aligned}
         self._is_aligned: list[bool] = self._aligned.tolist()
         frames = calibrated.alignment.R_segment_from_sensor
         mounts = [_mount(sensor, R) for sensor, R in zip(sensors, frames, strict=True)]
@@ -67,6 +68,7 @@ class LowerBodyFilter:
         self._rhythm_joints = [self.model.names.index(name) for name in RHYTHM_CHANNELS]
         self._driver, self._driver_joints = _driver_of(description.estimator, self.model, self._rhythm)
         self._jerk = np.zeros(len(self.model.dofs))
+        self._ahead = _ahead(parameters.sample_delay / max((sensor.rate_hz for sensor in sensors), default=100.0))
         self._last_ns: int | None = None
         self._heard_ns: list[int] = []
         self.unseen: frozenset[Segment] = frozenset(SEGMENTS)
@@ -140,10 +142,12 @@ class LowerBodyFilter:
         """
         p, rest = self.parameters, np.zeros((3, len(self.model.dofs)))
         for segment in sorted(unseen):
-            joints = self.model.joints_of(segment)
-            rest[:, joints] = np.array(
-                [[p.rest_position_std**2], [p.rest_velocity_std**2], [p.rest_acceleration_std**2]]
+            worn = segment in self._worn
+            position_std, velocity_std = (
+                (p.rest_position_std, p.rest_velocity_std) if worn else (p.unworn_std, p.unworn_std)
             )
+            stds = np.array([[position_std], [velocity_std], [p.rest_acceleration_std]])
+            rest[:, self.model.joints_of(segment)] = stds**2
         if Segment.PELVIS in unseen:
             rest[0, self.model.first_rotation] = 0.0
         rest[0, self.model.soft] = p.noise.soft_knee_std**2
@@ -159,7 +163,7 @@ class LowerBodyFilter:
         return reading
 
     def _row(self, captured_ns: int, reading: RhythmReading) -> Row:
-        values = np.concatenate([self.ekf.x, self.ekf.deviations()])
+        values = np.concatenate([self._ahead @ self.ekf.x, self.ekf.deviations()])
         if len(self.model.soft) == 0 or self.model.first_rotation > 0:
             pick = self.model.reported
             values = np.where(pick >= 0, values[:, pick], 0.0)
@@ -195,6 +199,11 @@ class LowerBodyFilter:
         self._rhythm.restore(state["rhythm"])
         if self._driver is not None and state["driver"] is not None:
             self._driver.restore(state["driver"])
+
+
+def _ahead(delay_s: float) -> Array:
+    """(3, 3) that carries position, velocity and acceleration on by the delay of the samples."""
+    return np.array([[1.0, delay_s, 0.5 * delay_s**2], [0.0, 1.0, delay_s], [0.0, 0.0, 1.0]])
 
 
 def _mount(sensor: SensorDescription, R_segment_from_sensor: Array) -> SensorMount:

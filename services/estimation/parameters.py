@@ -29,6 +29,8 @@ class StandingParameters:
     gravity: float = 9.81  # m/s^2
     gravity_tolerance: float = 0.5  # m/s^2; more is a unit or scale error
     same_vertical: float = 0.17  # rad (10 deg) between two standings of the same person with the same straps
+    sway: float = 0.012  # rad by which a standing segment's tilt differs between two instants
+    likely_bias: float = 0.02  # rad/s, standard deviation of gyroscope biases before anything is known
     steepest_thigh: float = (
         0.7  # |cos| between skin normal and vertical; a sitting thigh is above, a standing one below
     )
@@ -59,11 +61,15 @@ class FilterParameters:
     measurement: MeasurementModel = field(default_factory=MeasurementModel)
     noise: NoiseModel = field(default_factory=NoiseModel)
     soft_knees: bool = True
+    sample_delay: float = 0.5  # sample intervals by which a sample's meaning is older than its time stamp: worn sensors
+    # give the mean over the interval that ends there. 0 lags 5 ms behind on recordings at 100 Hz, 12 ms at 40 Hz
     silent_after_s: float = 0.25  # s without a sample until a segment counts as unseen
     doubt_s: float = 1.0  # s after a sensor's return, or after a gap, in which its joints are not valid yet
     longest_step_s: float = 0.25  # s between samples; after more the filter settles anew, keeping the pose
-    rest_position_std: float = 0.2  # rad at 100 Hz: pull to zero of a joint that no sensor sees
+    rest_position_std: float = 0.2  # rad at 100 Hz: pull to zero of a joint whose sensor has fallen silent
     rest_velocity_std: float = 0.5  # rad/s at 100 Hz, the same for its velocity
+    unworn_std: float = 0.1  # rad and rad/s at 100 Hz: the same where no sensor is worn. Looser, an unseen pelvis
+    # shakes with every landing of the leg (1 deg at the knee); tighter on silent sensors, their return takes longer
     rest_acceleration_std: float = 10.0  # rad/s^2 at 100 Hz, the same for its acceleration
     longest_jerk: float = 2000.0  # rad/s^3, bound on what a rhythm may feed; knee jerk in walking stays below 1500
 
@@ -78,5 +84,7 @@ class EstimationParameters:
     filter: FilterParameters = field(default_factory=FilterParameters)
     lateness_s: float = 0.04  # s of captured time that one hub may lag behind another before it is not waited for
     same_tick_s: float = 0.0005  # s, samples closer than this are fused at the time of the earliest
-    before_walking_s: float = 0.5  # s of standing at the start of the estimates: the filter settles in it
+    before_walking_s: float = (
+        2.0  # s of standing at the start of the estimates: the filter settles in it; 0.5 costs 0.1
+    )
     live_rate_hz: float = 25.0  # Hz of data time

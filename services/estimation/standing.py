@@ -154,7 +154,19 @@ class StandingDetector:
         seen = self._span.count > 0
         gravity = np.linalg.norm(mean[:, FORCE], axis=1)
         wrong = seen & (np.abs(gravity - self.parameters.gravity) > self.parameters.gravity_tolerance)
-        return StandingReference(until_ns, duration_s, mean[:, FORCE], mean[:, RATE], seen & ~wrong, wrong)
+        bias = mean[:, RATE] * self._trust_in_bias(duration_s)
+        return StandingReference(until_ns, duration_s, mean[:, FORCE], bias, seen & ~wrong, wrong)
+
+    def _trust_in_bias(self, duration_s: float) -> float:
+        """Share of the mean rate that is bias: what sways by an angle a turns at a mean rate of a / duration.
+
+        Least-squares mean of the prior (zero) and the measured rate: 0.99 after 10 s, 0.92 after 2 s, 0.74 after 1 s.
+        A shorter standing, which only the operator can mark, tells verticals alone.
+        """
+        limits = self.parameters
+        if duration_s < limits.shortest_s:
+            return 0.0
+        return 1.0 / (1.0 + (limits.sway / (duration_s * limits.likely_bias)) ** 2)
 
     def _sits(self, reference: StandingReference) -> bool:
         """A thigh whose skin normal points up or down is not upright. A lateral sensor cannot tell."""

@@ -9,11 +9,10 @@ from services.bench.accuracy import (
     RECORDINGS,
     STRAIGHT,
     WITH_TURN,
-    best_score,
-    estimate_angles,
     figures,
     mean_of,
 )
+from services.bench.joint_scores import best_score, estimate_angles
 from services.bench.neura_truth import collect_truth
 from services.ingest.data import find_data
 from services.ingest.errors import MissingFile
