@@ -98,8 +98,10 @@ class Supervisor:
             raise
         return self
 
-    def __exit__(self, *_: object) -> None:
+    def __exit__(self, kind: type[BaseException] | None, *_: object) -> bool:
+        """Stop everything. Ctrl-C and SIGTERM are the ordinary way to end, at whatever moment they come."""
         self._stop()
+        return kind is KeyboardInterrupt
 
     def wait_until_ready(self, timeout_s: float = 60.0) -> None:
         """Wait for every service's token. Raises NotReady with the last words of those that are missing."""

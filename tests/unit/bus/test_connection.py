@@ -58,11 +58,11 @@ def test_every_server_answers_and_each_answer_is_kept(connect, wait_until):
     ]
 
 
-def test_a_question_carries_parameters_and_body(connect):
+def test_a_question_carries_parameters_and_body(connect, wait_until):
     bus, server = connect(), connect()
     asked = []
     server.serve("q", lambda *question: asked.append(question) or [])
-    assert bus.ask("q", {"from": "3", "to": "-1"}, b"body") == []
+    wait_until(lambda: bus.ask("q", {"from": "3", "to": "-1"}, b"body") or asked)
     assert asked == [("q", {"from": "3", "to": "-1"}, b"body")]
 
 
@@ -70,7 +70,7 @@ def test_nobody_answers_for_nobody(connect):
     assert connect().ask("nobody/here") == []
 
 
-def test_what_a_server_raises_is_the_answer(connect):
+def test_what_a_server_raises_is_the_answer(connect, wait_until):
     bus, server = connect(), connect()
 
     def refuse(*_question):
@@ -78,13 +78,14 @@ def test_what_a_server_raises_is_the_answer(connect):
 
     server.serve("q", refuse)
     with pytest.raises(RemoteError, match="ValueError: no such recording"):
-        bus.ask("q")
+        wait_until(lambda: bus.ask("q"))
     assert server.errors == 1
 
 
 def test_later_answers_end_with_done(connect, wait_until):
     bus, server = connect(), connect()
     server.serve("q", lambda key, _p, _b: [Received(key, b"", b"%d" % i) for i in range(20)])
+    wait_until(lambda: bus.ask("q"))
     news: list[object] = []
     bus.ask_later("q", {}, news.append, lambda: news.append("done"))
     bus.ask_later("nobody", {}, news.append, lambda: news.append("nobody"))
