@@ -12,15 +12,14 @@ import numpy as np
 from numpy.typing import NDArray
 
 from schemas.vocabulary import Segment
-from services.biomech.kernels.step import step
+from services.biomech.kernels.bundle import advance, tie
+from services.biomech.kernels.fixed import LANES, width_of
 from services.biomech.kernels.tables import Body, Columns, Motion, Noise, Options, Sensors, Update, empty_motion
 from services.biomech.lower_body import LowerBodyModel, SensorMount
 
 Array = NDArray[np.float64]
 
 YAW_MODES = {"none": 0, "world": 1, "relative": 2}
-PAD = 4
-"""Doubles in a vector register."""
 
 
 @dataclass(frozen=True)
@@ -80,17 +79,21 @@ class LowerBodyEkf:
         n, S = len(model.dofs), len(mounts)
         N = 3 * (n - model.first_rotation) + model.first_rotation
         self.x = np.zeros((3, n))
-        self.padded_covariance = np.zeros((N, padded_length(N)))
+        width = width_of(N)
+        M = LANES * len(width)
+        self.padded_covariance = np.zeros((N, M))
         self.P = self.padded_covariance[:, :N]
         self.P[:] = np.diag(self._start_variance(N))
+        rotations = n - model.first_rotation
+        self._variances = self.padded_covariance.reshape(-1)[: 2 * rotations * (M + 1) : M + 1]
         self._motion = empty_motion(n)
-        M = self.padded_covariance.shape[1]
         self._update = Update(
             np.zeros((S, 6, M)), np.zeros((S, 6)), np.zeros((6, M)), np.zeros(6), np.zeros(6),
-            np.zeros(M), np.zeros((6, M)), np.zeros((6, 6)), np.zeros(6),
+            np.zeros(M), np.zeros((6, M)), np.zeros((6, 6)), np.zeros(6), width,
         )  # fmt: skip
         variances = _noise(model, S, noise)
         self._tables = (self.body, self.sensors, self.columns, self.options, variances, self._motion, self._update)
+        self._bundle = tie(self.x, self.padded_covariance, self.bias, *self._tables)
 
     def advance(self, dt_s: float, samples: Array, fresh: NDArray[np.bool_], jerk: Array, rest: Array) -> None:
         """Predict over dt_s >= 0 and fuse.
@@ -98,7 +101,7 @@ class LowerBodyEkf:
         samples (S, 6) rad/s and m/s^2 in the sensor frames, finite where `fresh` (S,); jerk (n,) rad/s^3;
         rest (3, n) variance at 100 Hz of "this joint's position/velocity/acceleration is zero", 0 for none.
         """
-        step(self.x, self.padded_covariance, dt_s, jerk, samples, fresh, self.bias, rest, *self._tables)
+        advance(self._bundle, dt_s, jerk, samples, fresh, rest)
 
     def tables(self) -> tuple[Body, Sensors, Columns, Options, Noise, Motion, Update]:
         """The kernels' tables and scratch, in the order in which `step` takes them."""
@@ -120,11 +123,9 @@ class LowerBodyEkf:
 
     def deviations(self) -> Array:
         """(2, n) standard deviations of position, rad, and velocity, rad/s; 0 for translations."""
-        r = len(self.model.dofs) - self.model.first_rotation
-        deviations = np.zeros((2, len(self.model.dofs)))
-        variances = self.P.diagonal()[: 2 * r].reshape(2, r)
-        np.sqrt(np.maximum(variances, 0.0), out=deviations[:, self.model.first_rotation :])
-        return deviations
+        deviations = np.sqrt(np.maximum(self._variances, 0.0)).reshape(2, -1)
+        t = self.model.first_rotation
+        return np.concatenate([np.zeros((2, t)), deviations], axis=1) if t else deviations
 
     def _start_variance(self, N: int) -> Array:
         r = len(self.model.dofs) - self.model.first_rotation
@@ -133,11 +134,6 @@ class LowerBodyEkf:
         variance[:r] = noise.start_position_std**2
         variance[r : 2 * r] = noise.start_velocity_std**2
         return variance
-
-
-def padded_length(N: int) -> int:
-    """Length of the covariance's rows: whole vector registers."""
-    return -(-N // PAD) * PAD
 
 
 def _options(model: LowerBodyModel, measurement: MeasurementModel) -> Options:
@@ -153,7 +149,8 @@ def _options(model: LowerBodyModel, measurement: MeasurementModel) -> Options:
 def _noise(model: LowerBodyModel, sensors: int, noise: NoiseModel) -> Noise:
     jerk = np.full(len(model.dofs), noise.jerk_density)
     jerk[: model.first_rotation] = noise.translation_density
-    return Noise(jerk, np.full(sensors, noise.gyro_std**2), np.full(sensors, noise.accel_std**2), noise.yaw_std**2)
+    sample = np.repeat([noise.gyro_std**2, noise.accel_std**2], 3)
+    return Noise(jerk, np.tile(sample, (sensors, 1)), noise.yaw_std**2)
 
 
 def _columns(model: LowerBodyModel, sensors: Sensors, measurement: MeasurementModel) -> Columns:
@@ -171,7 +168,15 @@ def _columns(model: LowerBodyModel, sensors: Sensors, measurement: MeasurementMo
             accel.append(list(rotations))
     thighs = (Segment.PELVIS, Segment.THIGH_RIGHT, Segment.THIGH_LEFT)
     yaw = np.array([j - t for segment in thighs for j in model.joints_of(segment)], dtype=np.int64)
-    return Columns(*_ragged(gyro), *_ragged(accel), yaw)
+    N = 3 * r + t
+    complete = N if measurement.accel_sees_motion else 2 * r
+    gyro, accel = [_in_threes(row, N) for row in gyro], [_in_threes(row, N) for row in accel]
+    return Columns(*_ragged(gyro), *_ragged(accel), yaw, complete)
+
+
+def _in_threes(touched: list[int], N: int) -> list[int]:
+    free = [column for column in range(N) if column not in touched]
+    return touched + free[: -len(touched) % 3]
 
 
 def _ragged(rows: list[list[int]]) -> tuple[NDArray[np.int64], NDArray[np.int64]]:

@@ -28,8 +28,10 @@ def kernel(function: Function) -> Function:
     Numba looks only at the file of the function itself when it decides whether the code on disk still holds, not
     at the functions that were compiled into it. A change in one kernel file would leave its callers stale, so the
     stamp is taken over all of them.
+
+    Kernels that call it take it in: a call would copy the tables' sixty array headers.
     """
-    dispatcher = numba.njit(**OPTIONS)(function)
+    dispatcher = numba.njit(forceinline=True, **OPTIONS)(function)
     cache_file = dispatcher._cache._cache_file
     if not hasattr(cache_file, "_source_stamp"):
         raise RuntimeError("this numba keeps its cache stamp elsewhere: adapt services/biomech/kernels/compiled.py")

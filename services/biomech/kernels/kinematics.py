@@ -23,6 +23,21 @@ def turn(R: Array, parent: int, j: int, k: int, angle: float) -> None:
 
 
 @kernel
+def place(position: Array, body: Body, rotation: Array, origin: Array) -> None:
+    """Where the bodies behind the joints are: R_world_from_segment (n, 3, 3) and origins (n, 3) m, nothing of motion."""
+    for j in range(body.parent.size):
+        p, k = body.parent[j], body.axis[j]
+        turned = 0.0 if j < body.translations else body.sign[j] * position[j]
+        turn(rotation, p, j, k, turned)
+        at = load(body.offset, j)
+        if p >= 0:
+            at = add(load(origin, p), rotate(rotation, p, at))
+        store(origin, j, at)
+        if j < body.translations:
+            origin[j, k] += body.sign[j] * position[j]
+
+
+@kernel
 def orient(x: Array, body: Body, motion: Motion) -> None:
     """Rotations, joint axes and angular velocities of all segments: all that gyroscopes and gravity need.
 

@@ -5,12 +5,13 @@ import math
 from services.biomech.kernels.compiled import inlined, kernel
 from services.biomech.kernels.tables import Array, Body, Motion, Options, Sensors
 from services.biomech.kernels.vectors import (
+    Axes,
     Vector,
     add,
     cross,
+    into,
     load,
     rotate,
-    rotate_back,
     scale,
     subtract,
 )
@@ -33,45 +34,45 @@ def put(H: Array, row: int, col: int, v: Vector) -> None:
     H[row + 2, col] = v[2]
 
 
-@kernel
-def place_sensor(s: int, sensors: Sensors, motion: Motion) -> None:
-    """R_world_from_sensor = R_world_from_segment R_segment_from_sensor."""
-    b = sensors.joint[s]
-    for i in range(3):
-        for k in range(3):
-            motion.sensor[i, k] = (
-                motion.rotation[b, i, 0] * sensors.rotation[s, 0, k]
-                + motion.rotation[b, i, 1] * sensors.rotation[s, 1, k]
-                + motion.rotation[b, i, 2] * sensors.rotation[s, 2, k]
-            )
+@inlined
+def sensor_axes(s: int, sensors: Sensors, motion: Motion) -> Axes:
+    """Columns of R_world_from_sensor = R_world_from_segment R_segment_from_sensor."""
+    b, R = sensors.joint[s], sensors.rotation
+    x = rotate(motion.rotation, b, (R[s, 0, 0], R[s, 1, 0], R[s, 2, 0]))
+    y = rotate(motion.rotation, b, (R[s, 0, 1], R[s, 1, 1], R[s, 2, 1]))
+    z = rotate(motion.rotation, b, (R[s, 0, 2], R[s, 1, 2], R[s, 2, 2]))
+    return x, y, z
 
 
 @kernel
 def gyro_rows(s: int, body: Body, sensors: Sensors, options: Options, motion: Motion, z: Array, H: Array) -> None:
     """z[0:3] = R' w;  d/d(dq_j) = R' a_j;  d/dq_j = R' da_j/dt where the options ask for it."""
     n, t = body.parent.size, body.translations
-    w = rotate_back(motion.sensor, load(motion.rate, sensors.joint[s]))
-    z[0], z[1], z[2] = w
+    axes = sensor_axes(s, sensors, motion)
+    z[0], z[1], z[2] = into(axes, load(motion.rate, sensors.joint[s]))
     for i in range(sensors.path_length[s]):
         j = sensors.path[s, i]
         if j < t:
             continue
-        put(H, 0, column(1, j, t, n), rotate_back(motion.sensor, load(motion.axis, j)))
+        put(H, 0, column(1, j, t, n), into(axes, load(motion.axis, j)))
         if options.gyro_sees_position:
-            put(H, 0, column(0, j, t, n), rotate_back(motion.sensor, load(motion.axis_rate, j)))
+            put(H, 0, column(0, j, t, n), into(axes, load(motion.axis_rate, j)))
 
 
 @kernel
 def gravity_rows(s: int, body: Body, sensors: Sensors, motion: Motion, z: Array, H: Array) -> None:
-    """The accelerometer as a gravity sensor: z[3:6] = R' (0, g, 0);  d/dq_j = -R' (a_j x g)."""
+    """The accelerometer as a gravity sensor: z[3:6] = f = R' (0, g, 0);  d/dq_j = f x R' a_j.
+
+    Needs `gyro_rows` before: R' a_j stands in its velocity columns.
+    """
     n, t = body.parent.size, body.translations
-    up = (0.0, GRAVITY, 0.0)
-    f = rotate_back(motion.sensor, up)
+    f = into(sensor_axes(s, sensors, motion), (0.0, GRAVITY, 0.0))
     z[3], z[4], z[5] = f
     for i in range(sensors.path_length[s]):
         j = sensors.path[s, i]
         if j >= t:
-            put(H, 3, column(0, j, t, n), rotate_back(motion.sensor, cross(up, load(motion.axis, j))))
+            c = column(1, j, t, n)
+            put(H, 3, column(0, j, t, n), cross(f, (H[0, c], H[1, c], H[2, c])))
 
 
 @kernel
@@ -82,19 +83,19 @@ def dynamic_rows(s: int, body: Body, sensors: Sensors, motion: Motion, z: Array,
     d/d(ddq) = R'(a x r);  d/d(dq) = 2 R'(a' x r + a x r');  d/dq = R'(a'' x r + 2 a' x r' + a x (r'' - f)).
     """
     n, t = body.parent.size, body.translations
-    b = sensors.joint[s]
+    b, axes = sensors.joint[s], sensor_axes(s, sensors, motion)
     arm, w = rotate(motion.rotation, b, load(sensors.position, s)), load(motion.rate, b)
     swing = cross(w, arm)
     P, V = add(load(motion.origin, b), arm), add(load(motion.origin_velocity, b), swing)
     turning = add(cross(load(motion.angular_acceleration, b), arm), cross(w, swing))
     A = add(load(motion.origin_acceleration, b), turning)
     f = (A[0], A[1] + GRAVITY, A[2])
-    z[3], z[4], z[5] = rotate_back(motion.sensor, f)
+    z[3], z[4], z[5] = into(axes, f)
     for i in range(sensors.path_length[s]):
         j = sensors.path[s, i]
         a = load(motion.axis, j)
         if j < t:
-            put(H, 3, column(2, j, t, n), rotate_back(motion.sensor, a))
+            put(H, 3, column(2, j, t, n), into(axes, a))
             continue
         a_rate = load(motion.axis_rate, j)
         r, r_rate = subtract(P, load(motion.origin, j)), subtract(V, load(motion.origin_velocity, j))
@@ -102,9 +103,9 @@ def dynamic_rows(s: int, body: Body, sensors: Sensors, motion: Motion, z: Array,
         by_velocity = scale(2.0, add(cross(a_rate, r), cross(a, r_rate)))
         by_position = add(cross(load(motion.axis_acceleration, j), r), scale(2.0, cross(a_rate, r_rate)))
         by_position = add(by_position, cross(a, subtract(r_acc, f)))
-        put(H, 3, column(2, j, t, n), rotate_back(motion.sensor, cross(a, r)))
-        put(H, 3, column(1, j, t, n), rotate_back(motion.sensor, by_velocity))
-        put(H, 3, column(0, j, t, n), rotate_back(motion.sensor, by_position))
+        put(H, 3, column(2, j, t, n), into(axes, cross(a, r)))
+        put(H, 3, column(1, j, t, n), into(axes, by_velocity))
+        put(H, 3, column(0, j, t, n), into(axes, by_position))
 
 
 @kernel

@@ -5,19 +5,20 @@ import numpy as np
 from services.biomech.kernels.compiled import kernel
 from services.biomech.kernels.covariance import (
     innovation_covariance,
+    mirror,
     predict_covariance,
     predict_state,
     project,
     subtract_gain,
     whiten,
 )
+from services.biomech.kernels.fixed import fixed
 from services.biomech.kernels.kinematics import accelerate, orient
 from services.biomech.kernels.measurement import (
     column,
     dynamic_rows,
     gravity_rows,
     gyro_rows,
-    place_sensor,
     yaw_row,
 )
 from services.biomech.kernels.tables import Array, Body, Columns, Flags, Motion, Noise, Options, Sensors, Update
@@ -26,13 +27,14 @@ NOMINAL_DT_S = 0.01
 """s. Virtual measurements are stated for 100 Hz; at other rates their variance is scaled so that the information
 they give per second stays the same."""
 
+TURN = 2.0 * np.pi
+
 
 @kernel
 def predicted_sample(
     s: int, body: Body, sensors: Sensors, options: Options, motion: Motion, z: Array, H: Array
 ) -> None:
     """z (6,) and H (6, N) of one sensor: angular velocity, then specific force. Needs the recursions before."""
-    place_sensor(s, sensors, motion)
     gyro_rows(s, body, sensors, options, motion, z, H)
     if options.accel_sees_motion:
         dynamic_rows(s, body, sensors, motion, z, H)
@@ -41,96 +43,107 @@ def predicted_sample(
 
 
 @kernel
+def fuse(P: Array, complete: int, H: Array, innovation: Array, variance: Array, update: Update) -> None:
+    """Fuse six rows whose W = H P is there."""
+    innovation_covariance(H, innovation, variance, update)
+    whiten(update)
+    subtract_gain(P, complete, update)
+
+
+@kernel
 def update_sensor(s: int, P: Array, columns: Columns, noise: Noise, update: Update) -> None:
     """Block of six rows: three of the gyroscope, three of the accelerometer."""
-    H, e = update.H[s], update.innovation[s]
-    gyro, n_gyro = columns.gyro[s], columns.gyro_count[s]
-    accel, n_accel = columns.accel[s], columns.accel_count[s]
-    project(P, H, 0, 3, gyro, n_gyro, update.W)
-    project(P, H, 3, 6, accel, n_accel, update.W)
-    innovation_covariance(H, e, 6, update)
-    for i in range(3):
-        update.L[i, i] += noise.gyro[s]
-        update.L[3 + i, 3 + i] += noise.accel[s]
-    whiten(6, update)
-    subtract_gain(P, 6, update)
+    H = update.H[s]
+    project(P, H, 0, columns.gyro[s], columns.gyro_count[s], update)
+    project(P, H, 3, columns.accel[s], columns.accel_count[s], update)
+    fuse(P, columns.complete, H, update.innovation[s], noise.sample[s], update)
 
 
 @kernel
 def yaw_rows(
-    P: Array,
-    body: Body,
-    columns: Columns,
-    options: Options,
-    motion: Motion,
-    noise: Noise,
-    share: float,
-    update: Update,
-) -> int:
+    P: Array, body: Body, columns: Columns, options: Options, motion: Motion, variance: float, update: Update
+) -> int:  # fmt: skip
     """The virtual yaw measurement (Joukov eq. 22) as the first virtual rows; how many there are.
 
     Yaw is measured as zero, so that slow gyro drift about the vertical does not turn the legs.
     """
     H, e, bodies = update.virtual_H, update.virtual_innovation, options.yaw_bodies
-    rows = 3 if options.yaw_mode == 1 else 2
-    for i in range(rows):
-        for c in columns.yaw:
-            H[i, c] = 0.0
-        if rows == 3:
+    if options.yaw_mode == 1:
+        rows = 3
+        for i in range(3):
             e[i] = -yaw_row(bodies[i], body, motion, 1.0, H[i])
-        else:
-            pelvis = yaw_row(bodies[0], body, motion, -1.0, H[i])
-            thigh = yaw_row(bodies[i + 1], body, motion, 1.0, H[i])
-            e[i] = (pelvis - thigh + np.pi) % (2.0 * np.pi) - np.pi
-        update.virtual_variance[i] = noise.yaw * share
-    project(P, H, 0, rows, columns.yaw, columns.yaw.size, update.W)
+    else:
+        rows = 2
+        pelvis = yaw_row(bodies[0], body, motion, -1.0, H[0])
+        H[1] = H[0]
+        for i in range(2):
+            apart = pelvis - yaw_row(bodies[i + 1], body, motion, 1.0, H[i])
+            e[i] = apart - TURN * np.floor(apart / TURN + 0.5)
+    for i in range(rows):
+        update.virtual_variance[i] = variance
+    project(P, H, 0, columns.yaw, columns.yaw.size, update)
     return rows
 
 
 @kernel
-def update_virtual(P: Array, rows: int, update: Update) -> None:
+def fuse_virtual(P: Array, complete: int, rows: int, update: Update) -> None:
     """Fuse the virtual rows collected in `update`, and clear them."""
-    innovation_covariance(update.virtual_H, update.virtual_innovation, rows, update)
-    for i in range(rows):
-        update.L[i, i] += update.virtual_variance[i]
-    whiten(rows, update)
-    subtract_gain(P, rows, update)
-    update.virtual_H[:rows] = 0.0
+    W, H = fixed(update.W, update.width), fixed(update.virtual_H, update.width)
+    for i in range(rows, 6):
+        for k in range(W.shape[1]):
+            W[i, k] = 0.0
+        update.virtual_innovation[i] = 0.0
+        update.virtual_variance[i] = 1.0
+    fuse(P, complete, update.virtual_H, update.virtual_innovation, update.virtual_variance, update)
+    for i in range(6):
+        for k in range(H.shape[1]):
+            H[i, k] = 0.0
 
 
 @kernel
-def rest_rows(x: Array, P: Array, rest: Array, share: float, rows: int, translations: int, update: Update) -> int:
+def copy_row(P: Array, c: int, complete: int, row: Array) -> None:
+    """Row c of the covariance. Of the rows that are not complete, the column holds what is up to date."""
+    if c < complete:
+        for k in range(P.shape[1]):
+            row[k] = P[c, k]
+    else:
+        for k in range(P.shape[0]):
+            row[k] = P[k, c]
+
+
+@kernel
+def rest_rows(
+    x: Array, P: Array, rest: Array, share: float, rows: int, translations: int, complete: int, update: Update
+) -> int:
     """Measurements of single states as zero, behind the `rows` there are; six at a time are fused."""
-    n, W = x.shape[1], update.W
     for order in range(3):
-        for j in range(translations, n):
+        for j in range(translations, x.shape[1]):
             if rest[order, j] <= 0.0:
                 continue
-            c = column(order, j, translations, n)
+            c = column(order, j, translations, x.shape[1])
             update.virtual_H[rows, c] = 1.0
             update.virtual_innovation[rows] = -x[order, j]
             update.virtual_variance[rows] = rest[order, j] * share
-            for k in range(P.shape[1]):
-                W[rows, k] = P[c, k]
+            copy_row(P, c, complete, update.W[rows])
             rows += 1
             if rows == 6:
-                update_virtual(P, rows, update)
+                fuse_virtual(P, complete, rows, update)
                 rows = 0
     return rows
 
 
 @kernel
-def fuse_virtual(
+def update_virtual(
     x: Array, P: Array, rest: Array, share: float,
     body: Body, columns: Columns, options: Options, noise: Noise, motion: Motion, update: Update,
 ) -> None:  # fmt: skip
     """Yaw and rest measurements; `share` makes their information per second the same at every rate."""
     rows = 0
     if options.yaw_mode > 0:
-        rows = yaw_rows(P, body, columns, options, motion, noise, share, update)
-    rows = rest_rows(x, P, rest, share, rows, body.translations, update)
+        rows = yaw_rows(P, body, columns, options, motion, noise.yaw * share, update)
+    rows = rest_rows(x, P, rest, share, rows, body.translations, columns.complete, update)
     if rows > 0:
-        update_virtual(P, rows, update)
+        fuse_virtual(P, columns.complete, rows, update)
 
 
 @kernel
@@ -167,14 +180,15 @@ def step(
     """
     if dt > 0.0:
         predict_state(x, dt, jerk)
-        predict_covariance(P, dt, noise.jerk, body.translations)
+        predict_covariance(P, dt, noise.jerk, body.translations, columns.complete, update.width)
     linearise(x, samples, fresh, bias, body, sensors, options, motion, update)
     update.dx[:] = 0.0
     for s in range(sensors.joint.size):
         if fresh[s]:
             update_sensor(s, P, columns, noise, update)
     if dt > 0.0:
-        fuse_virtual(x, P, rest, NOMINAL_DT_S / dt, body, columns, options, noise, motion, update)
+        update_virtual(x, P, rest, NOMINAL_DT_S / dt, body, columns, options, noise, motion, update)
+    mirror(P)
     n, t = x.shape[1], body.translations
     for j in range(n):
         for order in range(3):

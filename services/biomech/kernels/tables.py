@@ -13,9 +13,14 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from services.biomech.kernels.fixed import Width
+
 Array = NDArray[np.float64]
 Indices = NDArray[np.int64]
 Flags = NDArray[np.bool_]
+
+REGISTER = 8
+"""Doubles in the widest vector register."""
 
 
 class Body(NamedTuple):
@@ -39,13 +44,14 @@ class Sensors(NamedTuple):
 
 
 class Columns(NamedTuple):
-    """Which columns of the covariance each kind of row touches."""
+    """Which columns of the covariance each kind of row touches, in threes: filled up with columns it does not touch."""
 
     gyro: Indices  # (S, N)
     gyro_count: Indices  # (S,)
     accel: Indices  # (S, N)
     accel_count: Indices  # (S,)
     yaw: Indices  # positions of pelvis and hips
+    complete: int  # rows before this one are touched; those behind matter only through the prediction
 
 
 class Options(NamedTuple):
@@ -61,8 +67,7 @@ class Noise(NamedTuple):
     """How much is believed, as variances."""
 
     jerk: Array  # (n,) rad^2/s^5 white jerk; translations m^2/s^5
-    gyro: Array  # (S,) rad^2/s^2
-    accel: Array  # (S,) m^2/s^4
+    sample: Array  # (S, 6) rad^2/s^2 three times, m^2/s^4 three times
     yaw: float  # rad^2
 
 
@@ -78,13 +83,12 @@ class Motion(NamedTuple):
     origin: Array  # (n, 3) m
     origin_velocity: Array  # (n, 3) m/s
     origin_acceleration: Array  # (n, 3) m/s^2
-    sensor: Array  # (3, 3) R_world_from_sensor of the sensor at hand
 
 
 def empty_motion(joints: int) -> Motion:
     """Room for n joints."""
     a, b, c, d, e, f, g, h = (np.zeros((joints, 3)) for _ in range(8))
-    return Motion(np.zeros((joints, 3, 3)), a, b, c, d, e, f, g, h, np.zeros((3, 3)))
+    return Motion(np.zeros((joints, 3, 3)), a, b, c, d, e, f, g, h)
 
 
 class Update(NamedTuple):
@@ -99,3 +103,4 @@ class Update(NamedTuple):
     W: Array  # (6, M)
     L: Array  # (6, 6)
     y: Array  # (6,)
+    width: Width  # M

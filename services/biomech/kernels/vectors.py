@@ -6,6 +6,7 @@ from numpy.typing import NDArray
 from services.biomech.kernels.compiled import inlined
 
 Vector = tuple[float, float, float]
+Axes = tuple[Vector, Vector, Vector]
 Array = NDArray[np.float64]
 
 
@@ -58,10 +59,11 @@ def rotate(R: Array, i: int, v: Vector) -> Vector:
 
 
 @inlined
-def rotate_back(R: Array, v: Vector) -> Vector:
-    """R' v, with R of shape (3, 3)."""
+def into(axes: Axes, v: Vector) -> Vector:
+    """Components of v along three axes."""
+    x, y, z = axes
     return (
-        R[0, 0] * v[0] + R[1, 0] * v[1] + R[2, 0] * v[2],
-        R[0, 1] * v[0] + R[1, 1] * v[1] + R[2, 1] * v[2],
-        R[0, 2] * v[0] + R[1, 2] * v[1] + R[2, 2] * v[2],
+        x[0] * v[0] + x[1] * v[1] + x[2] * v[2],
+        y[0] * v[0] + y[1] * v[1] + y[2] * v[2],
+        z[0] * v[0] + z[1] * v[1] + z[2] * v[2],
     )

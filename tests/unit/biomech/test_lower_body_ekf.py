@@ -121,6 +121,31 @@ def test_covariance_stays_symmetric_and_positive(density: float) -> None:
     assert np.isfinite(ekf.x).all()
 
 
+@pytest.mark.parametrize("name", ["15 dof, gravity", "14 dof as in the paper"])
+def test_rest_is_measured_one_state_after_another(name: str) -> None:
+    """All orders of three joints, against scalar updates written down plainly."""
+    model, options = CASES[name]
+    measurement = MeasurementModel(options.gyro_sees_position, options.accel_sees_motion, "none")
+    free, held = (LowerBodyEkf(model, mounts(), np.zeros((5, 3)), measurement) for _ in range(2))
+    nowhere, jerk = np.zeros((3, len(model.dofs))), np.zeros(len(model.dofs))
+    for ekf in (free, held):
+        for sample in samples_of(model, 40, 0.01):
+            ekf.advance(0.01, sample, ALL, jerk, nowhere)
+    rest = nowhere.copy()
+    rest[:, [5, 6, 9]] = [[0.5], [2.0], [70.0]]
+    for ekf, pull in ((free, nowhere), (held, rest)):
+        ekf.advance(0.01, np.zeros((5, 6)), ~ALL, jerk, pull)
+    t, r = model.first_rotation, len(model.dofs) - model.first_rotation
+    x, P = np.concatenate([free.x[:, t:].ravel(), free.x[2, :t]]), free.P.copy()
+    for order, joint in np.argwhere(rest > 0):
+        c = order * r + joint - t
+        gain = P[:, c] / (P[c, c] + rest[order, joint])
+        x -= gain * x[c]
+        P -= np.outer(gain, P[c])
+    np.testing.assert_allclose(held.x[:, t:], x[: 3 * r].reshape(3, r), rtol=1e-9, atol=1e-9)
+    np.testing.assert_allclose(held.P, P, rtol=1e-9, atol=1e-9)
+
+
 @pytest.mark.parametrize("missing", range(5))
 def test_a_missing_sensor_has_no_block(missing: int) -> None:
     """Whatever stands in the row of a silent sensor, nothing of it is used."""
