@@ -8,11 +8,10 @@ from numpy.typing import NDArray
 
 from services.bench.joukov_curve import curve_ratio
 from services.bench.joukov_simulation import JERK_EDGES, SweepStudy, add_bins
-from services.bench.joukov_study import FIRST, GRID, QUANTITIES, Study
+from services.bench.joukov_study import FIRST, GRID, QUANTITIES, UNITS, Study
 from services.bench.line_chart import line_chart
 from services.bench.scoreboard import Row, Scoreboard
 
-UNITS = ("deg", "deg/s", "deg/s2")
 S_LABEL = "process noise S, (rad/s3)^2"
 
 

@@ -12,6 +12,7 @@ from services.bench.joukov_study import (
     GRID,
     QUANTITIES,
     SWEEP_CURVES,
+    UNITS,
     Study,
     best_index,
     locks_on_fundamental,
@@ -121,10 +122,10 @@ def median_error(studies: Sequence[SweepStudy], name: str, tenth: bool = False) 
 
 def _error_rows(case: str, studies: Sequence[SweepStudy]) -> list[Row]:
     rows = []
-    for name in ("trusted", "published", "unchanged"):
+    for name in ("trusted", "published", "adaptive noise", "unchanged"):
         for tenth in (False, True):
             ours, theirs = median_error(studies, name, tenth), median_error(studies, "plain", tenth)
-            for i, unit in enumerate(("deg", "deg/s", "deg/s2")):
+            for i, unit in enumerate(UNITS):
                 title = f"{case}, {name} at {'S*/10' if tenth else 'S*'}: {QUANTITIES[i]}"
                 rows.append(
                     informative(title, float(ours[i]), unit, float(theirs[i]), detail=name == "unchanged" or i == 1)

@@ -30,6 +30,7 @@ DECADE = 2
 SETTLED_S = 1.0
 """s of every run that are not scored: the filters find the angle."""
 QUANTITIES = ("position", "velocity", "acceleration")
+UNITS = ("deg", "deg/s", "deg/s2")
 
 PUBLISHED_COEFFICIENT_RATE = 0.2  # 1/s, the published simulation's
 SEVEN, TEN = TrustedParameters(), TrustedParameters(harmonics=10)
@@ -64,7 +65,7 @@ CURVES: dict[str, Filter] = {
     "trusted": partial(_trusted, parameters=TEN),
     "7 harmonics": partial(_trusted, parameters=SEVEN),
 }
-"""Filters that are run at every S. "trusted" has 10 harmonics."""
+"""Filters that are run at every S. "trusted" has 10 harmonics and both gates: lock quality and innovations."""
 OPTIONS: dict[str, Filter] = {
     "no gate at all": partial(_trusted, parameters=UNGATED, gate=NO_GATE),
     "quality gate alone": partial(_trusted, parameters=TEN, gate=NO_GATE),
@@ -77,6 +78,7 @@ SWEEP_CURVES: dict[str, Filter] = {
     "plain": plain,
     "published": published,
     "trusted": partial(_trusted, parameters=SWEEPING),
+    "adaptive noise": partial(_trusted, parameters=SWEEPING, noise=AdaptiveNoise()),
     "unchanged": partial(_trusted, parameters=TEN),
 }
 """For the sweep; "unchanged" is the filter for walking."""

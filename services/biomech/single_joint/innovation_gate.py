@@ -30,7 +30,12 @@ MEAN, POWER = range(2)
 
 @dataclass(frozen=True)
 class InnovationGate:
-    """Tunables of the fall-back."""
+    """Tunables of the fall-back.
+
+    It stands behind the gate by lock quality (`phase_loop.jerk_gate`), which alone lets through about one run in a
+    hundred of aimless smooth motion with up to 1.3 times the error of the plain filter. Where there is a period it
+    changes nothing.
+    """
 
     memory_s: float = 1.0
     """s of the sliding mean."""

@@ -154,8 +154,8 @@ def track_trusted(
     """The EKF with the jerk of `TrustedRhythm`; `noise` is an option that is off by default."""
     state, rhythm = np.empty((samples.shape[0], 3)), np.zeros((samples.shape[0], 4))
     _run_trusted(
-        (start_joint(), start_joint(), start_joint()), allocate_memory(1, parameters), prepare_bench(1, parameters), samples, dt_s,
-        jerk_density, sensor.variances, sensor.offset_m, (noise.factor, noise.floor, noise.periods),
+        (start_joint(), start_joint(), start_joint()), allocate_memory(1, parameters), prepare_bench(1, parameters),
+        samples, dt_s, jerk_density, sensor.variances, sensor.offset_m, (noise.factor, noise.floor, noise.periods),
         (gate.memory_s, gate.doubt, gate.refusal), state, rhythm,
     )  # fmt: skip
     return Track(state, rhythm)
