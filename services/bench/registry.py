@@ -50,8 +50,16 @@ def strides(json_path: Path | None = None, *subject: str) -> Scoreboard:
     return run(json_path, *subject)
 
 
+def events(json_path: Path | None = None, *subject: str) -> Scoreboard:
+    """Initial contact and toe-off of two shank sensors against force plates."""
+    from services.bench.events import run
+
+    return run(json_path, *subject)
+
+
 SCOREBOARDS: dict[str, Callable[..., Scoreboard]] = {
     "accuracy": accuracy,
+    "events": events,
     "joukov": joukov,
     "recovery": recovery,
     "rhythm": rhythm,

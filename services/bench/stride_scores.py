@@ -127,7 +127,7 @@ def match(true_s: Array, found_s: Array) -> Matched:
 def together(parts: Iterable[Matched]) -> Matched:
     """Several lists of pairs as one."""
     listed = list(parts)
-    errors = np.concatenate([part.errors_s for part in listed])
+    errors = np.concatenate([np.zeros(0), *(part.errors_s for part in listed)])
     return Matched(errors, sum(part.missed for part in listed), sum(part.extra for part in listed))
 
 

@@ -1,4 +1,4 @@
-"""Scoreboard of the strides: reviewed contacts of a recorded walk, and the truth of synthetic walks.
+"""Scoreboard of the strides: reviewed contacts of a recorded walk, a stroke survivor's treadmill, synthetic walks.
 
 Everything passes the whole chain, sensors to strides. The baseline is the plain EKF in the place of the default.
 """
@@ -18,6 +18,9 @@ from services.ingest.errors import SourceError
 from services.ingest.source import iter_messages, open_source
 
 NEURA = "neura_s02_walk"
+STROKE = "moving_reality_pp11"
+STROKE_SWINGS = {Side.LEFT: 113, Side.RIGHT: 112}
+"""Peaks of the sagittal shank rate above 1.2 rad/s in the recording, which has no other truth."""
 ESTIMATOR, BASELINE = "rhythmic_ekf", "ekf"
 WALKS = {
     "slow": "speed=0.5&seed=11&duration=40",
@@ -27,6 +30,7 @@ WALKS = {
     "turns and stops": "speed=1.0&seed=15&duration=60&turn_every=9&stop_every=20",
 }
 SPEED_TARGET = 0.05  # m/s, mean absolute error
+CADENCE_TARGET = 0.02
 IC, TO = GaitEventKind.INITIAL_CONTACT, GaitEventKind.TOE_OFF
 
 
@@ -54,16 +58,19 @@ def through_chain(spec: str, estimator: str) -> Run:
 
 
 def run(json_path: Path | None = None, subject: str = "all") -> Scoreboard:
-    """Score the strides of `neura`, of the `synthetic` walks, or of `all`."""
-    if subject not in ("neura", "synthetic", "all"):
-        raise ValueError(f"no strides of {subject!r}: choose neura, synthetic or all")
+    """Score the strides of `neura`, of the `stroke` treadmill, of the `synthetic` walks, or of `all`."""
+    recorded = {"neura": (NEURA, neura_rows), "stroke": (STROKE, stroke_rows)}
+    if subject not in (*recorded, "synthetic", "all"):
+        raise ValueError(f"no strides of {subject!r}: choose neura, stroke, synthetic or all")
     rows: list[Row] = []
-    if subject != "synthetic":
+    for title, (spec, rows_of) in recorded.items():
+        if subject not in (title, "all"):
+            continue
         try:
-            rows += neura_rows(through_chain(NEURA, ESTIMATOR), through_chain(NEURA, BASELINE))
+            rows += rows_of(through_chain(spec, ESTIMATOR), through_chain(spec, BASELINE))
         except SourceError as missing:
-            rows.append(Row("neura: skipped", None, "", str(missing), None, None))
-    if subject != "neura":
+            rows.append(Row(f"{title}: skipped", None, "", str(missing), None, None))
+    if subject in ("synthetic", "all"):
         for name, query in WALKS.items():
             spec = f"synthetic:walk?{query}"
             rows += synthetic_rows(name, through_chain(spec, ESTIMATOR), through_chain(spec, BASELINE))
@@ -91,6 +98,22 @@ def neura_rows(default: Run, baseline: Run) -> list[Row]:
             matches = [_against(run, kind, optical=truth == "optical ankles") for run in (default, baseline)]
             rows += _timing(f"neura: {_words(kind)} against {truth}", *matches)
     return rows + _lengths("neura", default, baseline)
+
+
+def stroke_rows(default: Run, baseline: Run) -> list[Row]:
+    """Counts of both feet, from their shanks alone, and whether both see the same cadence."""
+    rows = []
+    for side, swings in STROKE_SWINGS.items():
+        value, base = (sum(s.side is side for s in run.found.strides) for run in (default, baseline))
+        rows.append(Row(f"stroke: strides {side}", value, "", f"{swings} +- 1", abs(value - swings) <= 1, base))
+    apart, base_apart = (_cadence_difference(run.found) for run in (default, baseline))
+    rows.append(at_most("stroke: median stride time, left and right apart", apart, "1", CADENCE_TARGET, base_apart))
+    return rows
+
+
+def _cadence_difference(found: Found) -> float:
+    left, right = (float(np.median([s.stride_time_s for s in found.strides if s.side is side])) for side in Side)
+    return round(abs(left - right) / (0.5 * (left + right)), 4)
 
 
 def synthetic_rows(name: str, default: Run, baseline: Run) -> list[Row]:

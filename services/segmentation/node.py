@@ -6,6 +6,7 @@ from schemas.kinematics import JointState
 from schemas.rhythm import Rhythm
 from schemas.session import SessionDescription
 from schemas.signals import GAIT_EVENT, STRIDE, Signal
+from schemas.vocabulary import Segment, Side
 from services.flow.message import Message, Output, Stream
 from services.flow.node import Node, State
 from services.segmentation.history import History
@@ -13,15 +14,12 @@ from services.segmentation.intake import JOINTS_FROM, RHYTHM_FROM, Intake
 from services.segmentation.leg_kinematics import INDEX, SIDES, leg_motion
 from services.segmentation.pairing import Pairing
 from services.segmentation.parameters import SegmentationParameters
+from services.segmentation.shank_swing import ShankSwingDetector
 from services.segmentation.strides import GAP, SENSOR_MISSING, Flaw, StrideAssembler
 from services.segmentation.swing import SwingDetector
 
 SECOND_NS = 1_000_000_000
 DEFAULTS = SegmentationParameters()
-
-_SEEN_BY = {
-    side: [INDEX[name] for name in ("pelvis_tilt", f"hip_flexion_{side}", f"knee_flexion_{side}")] for side in SIDES
-}
 
 
 class SegmentationNode:
@@ -37,7 +35,9 @@ class SegmentationNode:
         self._pairing = Pairing()
         self._history = History()
         self._strides = StrideAssembler(parameters, self._body, self._history)
-        self._swings = [SwingDetector(parameters) for _ in SIDES]
+        worn = {sensor.segment for hub in description.hubs for sensor in hub.sensors}
+        self._seen_by = [_needed(side, worn) for side in SIDES]
+        self._swings = [_detector(side, worn, parameters) for side in SIDES]
         self._seen = [False, False]
         self._last_ns: int | None = None
         self._still_since_ns: int | None = None
@@ -65,7 +65,7 @@ class SegmentationNode:
             return []
         batch, velocity = kept
         motion = leg_motion(batch.position, velocity, self._body)
-        seen = [bool(batch.valid[_SEEN_BY[side]].all()) for side in SIDES]
+        seen = [needed is not None and bool(batch.valid[needed].all()) for needed in self._seen_by]
         outputs: list[Output] = []
         for i, captured_ns in enumerate(batch.captured_ns.tolist()):
             if self._last_ns is not None and captured_ns // SECOND_NS != self._last_ns // SECOND_NS:
@@ -147,6 +147,27 @@ class SegmentationNode:
         self._last_ns = state["last_ns"]
         self._still_since_ns = state["still_since_ns"]
         self._intake.restore(state["intake"])
+
+
+def _is_whole(side: Side, worn: set[Segment]) -> bool:
+    """The leg's place relative to the pelvis is known."""
+    return {Segment.PELVIS, Segment(f"thigh_{side}"), Segment(f"shank_{side}")} <= worn
+
+
+def _detector(side: Side, worn: set[Segment], parameters: SegmentationParameters) -> SwingDetector:
+    return SwingDetector(parameters) if _is_whole(side, worn) else ShankSwingDetector(parameters)
+
+
+def _needed(side: Side, worn: set[Segment]) -> list[int] | None:
+    """Coordinates that are valid while the leg is seen; None when it never is.
+
+    A shank has a known rate in space by itself, but without the thigh no coordinate of its own that could be valid.
+    """
+    if Segment(f"shank_{side}") not in worn:
+        return None
+    if _is_whole(side, worn):
+        return [INDEX[name] for name in ("pelvis_tilt", f"hip_flexion_{side}", f"knee_flexion_{side}")]
+    return [INDEX[f"knee_flexion_{side}"]] if Segment(f"thigh_{side}") in worn else []
 
 
 def build(description: SessionDescription) -> Node:

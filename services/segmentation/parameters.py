@@ -27,6 +27,16 @@ class SegmentationParameters:
     toe_off_std_s: float = 0.03
     """s, one standard deviation of a toe-off."""
 
+    shank_contact_after_swing_s: float = 0.045
+    """s from the end of the shank's forward rotation to contact, where the shank alone is known; force plates, the
+    first of the two adults."""
+    shank_toe_off_before_swing_s: float = 0.07
+    """s from toe-off to the start of that rotation; likewise."""
+    shank_contact_std_s: float = 0.02
+    """s, one standard deviation of a contact timed by the shank alone; force plates."""
+    shank_toe_off_std_s: float = 0.015
+    """s, the same for a toe-off."""
+
     swing_angle_floor: float = 0.15
     """rad of forward shank rotation that no swing stays below; smaller movements are shuffles (proposal)."""
     swing_angle_fraction: float = 0.2

@@ -21,10 +21,10 @@ class Contact(NamedTuple):
 class Rotation:
     """Forward rotation of the shank that goes on."""
 
-    start_ns: int
+    start_ns: int  # the rate passes zero, between two samples
     angle: float  # rad
     peak: float  # rad/s
-    last_forward_ns: int
+    end_ns: int  # the rate passes zero again; the newest sample while the rotation goes on
     ended: bool
 
 
@@ -33,6 +33,7 @@ class SwingState:
     """Everything of a detector that changes."""
 
     last_ns: int | None = None
+    last_rate: float = 0.0
     rotation: Rotation | None = None
     swinging: bool = False
     toe_off_ns: int = 0
@@ -57,17 +58,18 @@ class SwingDetector:
 
     @property
     def rotating(self) -> bool:
-        """The shank has rotated forward by half of what makes a swing, and still does."""
+        """The shank has rotated forward by half of what makes a swing, half as fast, and still does."""
         rotation = self.state.rotation
-        return rotation is not None and not rotation.ended and rotation.angle > 0.5 * self._swing_angle()
+        if rotation is None or rotation.ended or rotation.peak < 0.5 * self.parameters.swing_rate_floor:
+            return False
+        return rotation.angle > 0.5 * self._swing_angle()
 
     def step(self, captured_ns: int, rate: float, forward: float, other_rotating: bool) -> Contact | None:
         """Take the shank rate (rad/s, forward positive) and the ankle's place ahead of the pelvis (m)."""
         state = self.state
-        dt = 0.0 if state.last_ns is None else (captured_ns - state.last_ns) * 1e-9
-        state.last_ns = captured_ns
         state.trail.append((captured_ns, forward))
-        self._follow_rotation(captured_ns, rate, dt)
+        self._follow_rotation(captured_ns, rate)
+        state.last_ns, state.last_rate = captured_ns, rate
         if state.swinging:
             return self._land(captured_ns)
         self._forget()
@@ -82,26 +84,35 @@ class SwingDetector:
         own, p = self.state.own_angles, self.parameters
         return max(p.swing_angle_floor, p.swing_angle_fraction * median(own) if own else 0.0)
 
-    def _follow_rotation(self, captured_ns: int, rate: float, dt: float) -> None:
+    def _follow_rotation(self, captured_ns: int, rate: float) -> None:
         state, p = self.state, self.parameters
         rotation = state.rotation
+        dt = 0.0 if state.last_ns is None else (captured_ns - state.last_ns) * 1e-9
         if rotation is None:
             if rate > 0:
-                state.rotation = Rotation(captured_ns, 0.0, rate, captured_ns, ended=False)
+                state.rotation = Rotation(self._zero_ns(captured_ns, rate), 0.0, rate, captured_ns, ended=False)
         elif rate > 0:
             if not rotation.ended:
                 rotation.angle += rate * dt
                 rotation.peak = max(rotation.peak, rate)
-                rotation.last_forward_ns = captured_ns
+                rotation.end_ns = captured_ns
         elif state.swinging:
             # The rotation is kept until the foot has landed.
-            rotation.ended = True
+            if not rotation.ended:
+                rotation.end_ns, rotation.ended = self._zero_ns(captured_ns, rate), True
         else:
             rotation.angle += rate * dt
             if rate < -p.swing_end_rate or rotation.angle <= 0:
                 state.rotation = None
         if not state.swinging and rotation is not None and captured_ns - rotation.start_ns > p.most_swing_s * 1e9:
             state.rotation = None
+
+    def _zero_ns(self, captured_ns: int, rate: float) -> int:
+        """When the rate passed zero on its way to this sample; the sample's own time when it did not."""
+        last_ns, last_rate = self.state.last_ns, self.state.last_rate
+        if last_ns is None or (last_rate > 0) == (rate > 0):
+            return captured_ns
+        return last_ns + round((captured_ns - last_ns) * last_rate / (last_rate - rate))
 
     def _forget(self) -> None:
         state = self.state
@@ -116,42 +127,51 @@ class SwingDetector:
         rotation = state.rotation
         if rotation is None or rotation.angle < self._swing_angle() or rotation.peak < p.swing_rate_floor:
             return None
+        toe_off = self._time_toe_off(rotation)
+        state.toe_off_ns, state.swinging = toe_off.captured_ns, True
+        return toe_off
+
+    def _time_toe_off(self, rotation: Rotation) -> Contact:
+        state, p = self.state, self.parameters
         before = [i for i, (ns, _) in enumerate(state.trail) if ns <= rotation.start_ns]
         at = min(before, key=lambda i: state.trail[i][1])
         state.hindmost = state.trail[at][1]
-        state.toe_off_ns = turning_point(state.trail, at) + int(p.toe_off_after_hindmost_s * 1e9)
-        state.swinging = True
+        toe_off_ns = turning_point(state.trail, at) + int(p.toe_off_after_hindmost_s * 1e9)
         # What was before belongs to the last stride: its foremost point must not be taken for this one's.
         del state.trail[:at]
-        return Contact(GaitEventKind.TOE_OFF, state.toe_off_ns, p.toe_off_std_s)
+        return Contact(GaitEventKind.TOE_OFF, toe_off_ns, p.toe_off_std_s)
 
     def _land(self, captured_ns: int) -> Contact | None:
-        state, p, rotation = self.state, self.parameters, self.state.rotation
+        p, rotation = self.parameters, self.state.rotation
         assert rotation is not None
         if captured_ns - rotation.start_ns > (p.most_swing_s + p.landing_timeout_s) * 1e9:
             self.interrupt()
             return None
-        if not rotation.ended:
-            return None
+        contact = self._time_contact(captured_ns, rotation) if rotation.ended else None
+        return None if contact is None else self._put_down(contact)
+
+    def _time_contact(self, captured_ns: int, rotation: Rotation) -> Contact | None:
+        """The contact that ends the swing, once it is sure."""
+        state, p = self.state, self.parameters
         at = max(range(len(state.trail)), key=lambda i: state.trail[i][1])
         foremost = state.trail[at][1]
         back = max(p.turn_round_floor_m, p.turn_round_share * (foremost - state.hindmost))
         if state.trail[-1][1] < foremost - back:
             contact_ns = turning_point(state.trail, at) + int(p.contact_after_foremost_s * 1e9)
-            return self._put_down(contact_ns, p.contact_std_s) if contact_ns <= captured_ns else None
-        if captured_ns - rotation.last_forward_ns > p.landing_timeout_s * 1e9:
-            contact_ns = rotation.last_forward_ns + int(p.contact_after_swing_s * 1e9)
-            return self._put_down(contact_ns, p.resting_contact_std_s)
+            contact = Contact(GaitEventKind.INITIAL_CONTACT, contact_ns, p.contact_std_s)
+            return contact if contact_ns <= captured_ns else None
+        if captured_ns - rotation.end_ns > p.landing_timeout_s * 1e9:
+            contact_ns = rotation.end_ns + int(p.contact_after_swing_s * 1e9)
+            return Contact(GaitEventKind.INITIAL_CONTACT, contact_ns, p.resting_contact_std_s)
         return None
 
-    def _put_down(self, contact_ns: int, std_s: float) -> Contact | None:
+    def _put_down(self, contact: Contact) -> Contact | None:
         state = self.state
         assert state.rotation is not None
         known = state.own_angles[-self.parameters.swing_memory + 1 :]
-        after = [(ns, forward) for ns, forward in state.trail if ns >= contact_ns]
-        toe_off_ns, last_ns = state.toe_off_ns, state.last_ns
-        self.state = SwingState(last_ns=last_ns, own_angles=[*known, state.rotation.angle], trail=after)
-        return Contact(GaitEventKind.INITIAL_CONTACT, contact_ns, std_s) if contact_ns > toe_off_ns else None
+        after = [(ns, forward) for ns, forward in state.trail if ns >= contact.captured_ns]
+        self.state = SwingState(state.last_ns, state.last_rate, own_angles=[*known, state.rotation.angle], trail=after)
+        return contact if contact.captured_ns > state.toe_off_ns else None
 
     def snapshot(self) -> State:
         """The state as JSON values."""
@@ -162,6 +182,7 @@ class SwingDetector:
         rotation = state["rotation"]
         self.state = SwingState(
             last_ns=state["last_ns"],
+            last_rate=state["last_rate"],
             rotation=None if rotation is None else Rotation(**rotation),
             swinging=state["swinging"],
             toe_off_ns=state["toe_off_ns"],

@@ -17,6 +17,8 @@ RECORDINGS = {
     "neura_s02_walk_midshank": (5, 2503, 100.0),
     "fan_knee_drop_landing_left": (2, 6671, 100.0),
     "alborno_sub03_sts1": (5, 1600, 40.0),
+    "moving_reality_pp11": (2, 12482, 100.0),
+    "zju_s01_norm_02": (2, 1655, 100.0),
 }
 
 

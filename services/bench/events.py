@@ -1,0 +1,106 @@
+"""Scoreboard of initial contact and toe-off: two shank sensors through the whole chain, against force plates.
+
+The constants of segmentation were chosen on the first subject. Which instants of the shank's motion they are added to
+was decided with a look at both.
+"""
+
+from collections.abc import Iterable
+from pathlib import Path
+from tempfile import TemporaryDirectory
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from schemas.vocabulary import GaitEventKind
+from services.bench.force_plates import PlateWalk, manifest_of, plate_walks
+from services.bench.scoreboard import Row, Scoreboard, at_least, at_most, informative
+from services.bench.stride_scores import Matched, match, together
+from services.bench.strides import ESTIMATOR, through_chain
+from services.ingest.data import MANIFESTS
+from services.ingest.errors import SourceError
+
+Array = NDArray[np.float64]
+
+TEMPLATE = MANIFESTS / "zju_s01_norm_02.toml"
+TUNED, SCORED = "S01", "S05"
+CONDITIONS = {"Slow": "slow", "Norm": "usual", "Fast": "fast", "Lmin": "altered"}
+BIAS_MS, SPREAD_MS, DETECTED = 15.0, 25.0, 0.98
+DETECTED_S = 0.1
+"""s from its plate event within which an event counts as detected."""
+
+
+class Judged(NamedTuple):
+    """The found events of one kind beside one walk's plate events."""
+
+    condition: str
+    kind: GaitEventKind
+    matched: Matched
+    claimed_std_s: list[float]
+
+
+def run(json_path: Path | None = None, subject: str = "all") -> Scoreboard:
+    """Score the events of the subject S01, of S05, or of both."""
+    if subject not in (TUNED, SCORED, "all"):
+        raise ValueError(f"no force plates of {subject!r}: choose {TUNED}, {SCORED} or all")
+    rows: list[Row] = []
+    for name in (TUNED, SCORED):
+        if subject in (name, "all"):
+            rows += subject_rows(name)
+    note = f"the constants were chosen on {TUNED}, the instants that they are added to on both"
+    scoreboard = Scoreboard("gait events of two shank sensors against force plates", rows, note)
+    if json_path is not None:
+        scoreboard.write_json(json_path)
+    return scoreboard
+
+
+def subject_rows(subject: str) -> list[Row]:
+    """All figures of a subject; one row that says why when the data is not here."""
+    try:
+        judged = [entry for walk in plate_walks(subject) for entry in judge(walk)]
+    except SourceError as missing:
+        return [Row(f"{subject}: skipped", None, "", str(missing), None, None)]
+    rows = []
+    for kind in GaitEventKind:
+        entries = [entry for entry in judged if entry.kind is kind]
+        rows += event_rows(f"{subject} {kind.value.replace('_', ' ')}", entries)
+    return rows
+
+
+def judge(walk: PlateWalk) -> Iterable[Judged]:
+    """Run one walk through the chain and compare each plate event with the nearest event of that foot and kind."""
+    with TemporaryDirectory() as folder:
+        manifest = Path(folder) / "recording.toml"
+        manifest.write_text(manifest_of(TEMPLATE, walk), encoding="utf-8")
+        found = through_chain(str(manifest), ESTIMATOR).found
+    for (side, kind), true_s in walk.contact_s.items():
+        claimed = [event.time_std_s for event in found.events if (event.side, event.kind) == (side, kind)]
+        yield Judged(walk.condition, kind, match(np.array([true_s]), found.times_s(side, kind)), claimed)
+
+
+def event_rows(name: str, judged: list[Judged]) -> list[Row]:
+    """Bias, spread and detected share over all walks with their targets; then the same per condition."""
+    whole = together(entry.matched for entry in judged)
+    if whole.bias_ms is None or whole.spread_ms is None:
+        return [Row(f"{name}: nothing found", None, "", f"{whole.missed} missed", False, None)]
+    claimed_ms = 1e3 * float(np.mean([std for entry in judged for std in entry.claimed_std_s]))
+    rows = [
+        at_least(f"{name}: detected of {_asked(whole)}", detected_share(whole), "1", DETECTED),
+        Row(f"{name}: bias", whole.bias_ms, "ms", f"0 +- {BIAS_MS:g}", abs(whole.bias_ms) <= BIAS_MS, None),
+        at_most(f"{name}: SD", whole.spread_ms, "ms", SPREAD_MS),
+        informative(f"{name}: SD that the events claim", round(claimed_ms, 1), "ms"),
+    ]
+    for condition, words in CONDITIONS.items():
+        part = together(entry.matched for entry in judged if entry.condition == condition)
+        rows.append(informative(f"{name}, {words}: bias of {_asked(part)}", part.bias_ms, "ms"))
+        rows.append(informative(f"{name}, {words}: SD", part.spread_ms, "ms"))
+    return rows
+
+
+def detected_share(matched: Matched) -> float:
+    """Share of the true events that have a found one within DETECTED_S."""
+    return float(np.sum(np.abs(matched.errors_s) <= DETECTED_S)) / max(1, _asked(matched))
+
+
+def _asked(matched: Matched) -> int:
+    return len(matched.errors_s) + matched.missed
