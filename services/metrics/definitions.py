@@ -157,9 +157,16 @@ VARIABILITY: tuple[Definition, ...] = tuple(
 )
 
 COUNTED, TURNING, REJECTED = "strides_counted", "strides_turning", "strides_rejected"
+ENDS = "strides_starting_or_stopping"
 
 COUNTS: tuple[Definition, ...] = (
-    Definition(COUNTED, "1", True, "Number of strides that count: valid and straight."),
+    Definition(COUNTED, "1", True, "Number of strides that count: valid, straight and, where enough are, steady."),
+    Definition(
+        ENDS,
+        "1",
+        True,
+        "Number of strides left out because they are the foot's first or last of a walk; 0 while too few would remain.",
+    ),
     Definition(TURNING, "1", True, "Number of valid strides within which the pelvis turned; they do not count."),
     Definition(REJECTED, "1", True, "Number of strides that do not count because something about them is wrong."),
 )

@@ -1,6 +1,6 @@
 """Running mean and standard deviation."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
@@ -34,6 +34,16 @@ class Moments:
         deviation = value - self.mean
         self.mean = self.mean + deviation / self.count
         self.squares = self.squares + deviation * (value - self.mean)
+
+    def merged(self, other: "Moments") -> "Moments":
+        """The moments of both sets of values, neither of which changes (Chan 1979)."""
+        count = self.count + other.count
+        if count == 0:
+            return replace(self)
+        apart = other.mean - self.mean
+        mean = self.mean + apart * (other.count / count)
+        squares = self.squares + other.squares + apart * apart * (self.count * other.count / count)
+        return Moments(count, mean, squares)
 
     def spread(self) -> Array | None:
         """Standard deviation with n - 1; None below two values."""

@@ -11,3 +11,6 @@ class MetricsParameters:
     """strides below which a mean is withheld (proposal; reliable means need 6 of each foot)."""
     least_strides_for_variability: int = 10
     """strides below which standard deviation and CV are withheld as metrics (proposal of the clinical conventions)."""
+    least_steady_strides: int = 3
+    """steady strides of each foot that is seen, from which on the starting and stopping ones are left out; as many as
+    a mean needs."""

@@ -1,16 +1,17 @@
 """What a session amounts to: the strides that count, summed up as they come."""
 
-import numpy as np
+from dataclasses import dataclass
 
-from schemas.gait import CURVE_POINTS, Stride
+from schemas.gait import Stride
 from schemas.metrics import MeanCurve, Metric
-from schemas.vocabulary import LOWER_BODY, Side
+from schemas.vocabulary import Side
 from services.flow.node import State
 from services.metrics import summary
 from services.metrics.definitions import (
     COUNTED,
     COUNTS,
     CV_SUFFIX,
+    ENDS,
     RATIOS,
     RATIOS_OF,
     REJECTED,
@@ -19,56 +20,52 @@ from services.metrics.definitions import (
     TURNING,
     VARIABILITY,
     VARIABILITY_OF,
-    Definition,
 )
-from services.metrics.moments import Moments
 from services.metrics.parameters import MetricsParameters
+from services.metrics.sums import Sums, sides_of
 
-HEADING = "pelvis_rotation"
 _ROWS = {definition.name: definition for definition in (*STRIDE_METRICS, *VARIABILITY)}
 
 
-def sides_of(definition: Definition) -> tuple[str | None, ...]:
-    """The values of `side` that a metric comes with."""
-    return (Side.LEFT.value, Side.RIGHT.value) if definition.per_side else (None,)
+@dataclass(frozen=True, slots=True)
+class Newest:
+    """The last stride of a foot so far. Whether it was the last of a walk shows only in what follows."""
 
-
-def side_of_curve(degree_of_freedom: str) -> Side:
-    """Whose strides the mean curve of a joint is taken over; the right foot's for the pelvis."""
-    return Side.LEFT if degree_of_freedom.endswith("_left") else Side.RIGHT
+    stride: Stride
+    first: bool  # of its walk
 
 
 class SessionTotals:
-    """Moments of every measure and curve; counts by side. Its size does not grow with the session."""
+    """Sums over steady strides, and over the first and last of each foot in a walk; counts by side.
+
+    A stride goes on from another when it starts with the contact that ended that one. The first and the last of such
+    a row are a start and a stop (or their neighbours were not seen): half a step long, slow, and no property of steady
+    walking. They are left out as soon as every foot that is seen has enough steady strides; until then all count.
+    The size does not grow with the session.
+    """
 
     def __init__(self) -> None:
-        self._scalars = {
-            (definition.name, side): Moments.empty() for definition in STRIDE_METRICS for side in sides_of(definition)
-        }
-        self._curves = {dof.name: Moments.empty(CURVE_POINTS) for dof in LOWER_BODY}
-        self._counts = {(definition.name, side.value): 0 for definition in COUNTS for side in Side}
+        self._steady = Sums()
+        self._ends = Sums()
+        self._newest: dict[Side, Newest | None] = dict.fromkeys(Side)
+        self._unused = {(name, side): 0 for name in (TURNING, REJECTED) for side in Side}
 
     def add(self, stride: Stride) -> None:
-        """Take one stride."""
-        count = REJECTED if not stride.valid else TURNING if stride.turning else COUNTED
-        self._counts[count, stride.side.value] += 1
-        if count != COUNTED:
-            return
-        for definition in STRIDE_METRICS:
-            value = None if definition.measure is None else definition.measure(stride)
-            if value is not None:
-                self._scalars[definition.name, stride.side.value if definition.per_side else None].add(value)
-        for name, curve in stride.curves.items():
-            if name in self._curves and side_of_curve(name) is stride.side:
-                position = np.array(curve.position)
-                # Where a person walks to is no property of the gait: the heading is shown about its mean.
-                self._curves[name].add(position - position.mean() if name == HEADING else position)
+        """Take one stride; strides of one foot come in order."""
+        newest = self._newest[stride.side]
+        first = newest is None or newest.stride.end_ns != stride.start_ns
+        if newest is not None and _counts(newest.stride):
+            (self._ends if newest.first or first else self._steady).add(newest.stride)
+        self._newest[stride.side] = Newest(stride, first)
+        if not _counts(stride):
+            self._unused[TURNING if stride.valid else REJECTED, stride.side] += 1
 
     def metrics(self, parameters: MetricsParameters) -> list[Metric]:
         """Every row of the table, in its order."""
+        sums, left_out = self._counting(parameters)
         means = {
             (definition.name, side): summary.mean_metric(
-                definition, side, self._scalars[definition.name, side], parameters.least_strides
+                definition, side, sums.scalars[definition.name, side], parameters.least_strides
             )
             for definition in STRIDE_METRICS
             for side in sides_of(definition)
@@ -77,44 +74,69 @@ class SessionTotals:
             summary.ratio_metric(definition, means[name, Side.LEFT.value], means[name, Side.RIGHT.value])
             for name, definition in zip(RATIOS_OF, RATIOS, strict=True)
         ]
-        return [*means.values(), *ratios, *self._variability(parameters), *self._numbers()]
+        return [*means.values(), *ratios, *_variability(sums, parameters), *self._numbers(sums, left_out)]
 
     def curves(self, parameters: MetricsParameters) -> list[MeanCurve]:
         """Mean curves of the joints that were seen in enough strides."""
-        drawn = [summary.mean_curve(name, moments, parameters.least_strides) for name, moments in self._curves.items()]
+        sums, _ = self._counting(parameters)
+        drawn = [summary.mean_curve(name, moments, parameters.least_strides) for name, moments in sums.curves.items()]
         return [curve for curve in drawn if curve is not None]
 
-    def _variability(self, parameters: MetricsParameters) -> list[Metric]:
-        metrics: list[Metric] = []
-        for name in VARIABILITY_OF:
-            sd, cv = _ROWS[name + SD_SUFFIX], _ROWS[name + CV_SUFFIX]
-            pairs = [
-                summary.variability_metrics(
-                    sd, cv, side, self._scalars[name, side], parameters.least_strides_for_variability
-                )
-                for side in sides_of(sd)
-            ]
-            metrics += [pair[0] for pair in pairs] + [pair[1] for pair in pairs]
-        return metrics
+    def _counting(self, parameters: MetricsParameters) -> tuple[Sums, dict[Side, int]]:
+        """The sums over the strides that count, and how many of each foot are left out as start or stop."""
+        newest = Sums()
+        for kept in self._newest.values():
+            if kept is not None and _counts(kept.stride):
+                newest.add(kept.stride)
+        ends = self._ends.merged(newest)
+        seen = [side for side in Side if self._steady.strides[side] + ends.strides[side]]
+        if seen and all(self._steady.strides[side] >= parameters.least_steady_strides for side in seen):
+            return self._steady, ends.strides
+        return self._steady.merged(ends), dict.fromkeys(Side, 0)
 
-    def _numbers(self) -> list[Metric]:
+    def _numbers(self, sums: Sums, left_out: dict[Side, int]) -> list[Metric]:
+        numbers = self._unused | {(COUNTED, side): sums.strides[side] for side in Side}
+        numbers |= {(ENDS, side): left_out[side] for side in Side}
         return [
             summary.shown(definition, side.value, float(number), None, None, number)
             for definition in COUNTS
             for side in Side
-            for number in [self._counts[definition.name, side.value]]
+            for number in [numbers[definition.name, side]]
         ]
 
     def snapshot(self) -> State:
-        """Moments and counts."""
+        """Sums, counts and the newest strides."""
         return {
-            "scalars": [[name, side, moments.snapshot()] for (name, side), moments in self._scalars.items()],
-            "curves": {name: moments.snapshot() for name, moments in self._curves.items()},
-            "counts": [[name, side, number] for (name, side), number in self._counts.items()],
+            "steady": self._steady.snapshot(),
+            "ends": self._ends.snapshot(),
+            "unused": [[name, side.value, number] for (name, side), number in self._unused.items()],
+            "newest": [[kept.stride.model_dump(mode="json"), kept.first] for kept in self._newest.values() if kept],
         }
 
     def restore(self, state: State) -> None:
         """Inverse of `snapshot`."""
-        self._scalars |= {(name, side): Moments.restored(kept) for name, side, kept in state["scalars"]}
-        self._curves |= {name: Moments.restored(kept) for name, kept in state["curves"].items()}
-        self._counts |= {(name, side): number for name, side, number in state["counts"]}
+        self._steady.restore(state["steady"])
+        self._ends.restore(state["ends"])
+        self._unused |= {(name, Side(side)): number for name, side, number in state["unused"]}
+        self._newest = dict.fromkeys(Side)
+        for kept, first in state["newest"]:
+            stride = Stride.model_validate(kept)
+            self._newest[stride.side] = Newest(stride, first)
+
+
+def _counts(stride: Stride) -> bool:
+    return stride.valid and not stride.turning
+
+
+def _variability(sums: Sums, parameters: MetricsParameters) -> list[Metric]:
+    metrics: list[Metric] = []
+    for name in VARIABILITY_OF:
+        sd, cv = _ROWS[name + SD_SUFFIX], _ROWS[name + CV_SUFFIX]
+        pairs = [
+            summary.variability_metrics(
+                sd, cv, side, sums.scalars[name, side], parameters.least_strides_for_variability
+            )
+            for side in sides_of(sd)
+        ]
+        metrics += [pair[0] for pair in pairs] + [pair[1] for pair in pairs]
+    return metrics

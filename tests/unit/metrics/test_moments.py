@@ -52,3 +52,17 @@ def test_snapshot_to_the_bit(shape):
     resumed.add(np.full(shape, 0.3))
     np.testing.assert_array_equal(resumed.mean, moments.mean)
     np.testing.assert_array_equal(resumed.squares, moments.squares)
+
+
+@settings(max_examples=60, deadline=None)
+@given(st.lists(st.floats(-1e6, 1e6), max_size=30), st.lists(st.floats(-1e6, 1e6), max_size=30))
+def test_two_sets_merged_are_one_set(first, second):
+    parts = Moments.empty(), Moments.empty()
+    for values, moments in zip((first, second), parts, strict=True):
+        for value in values:
+            moments.add(value)
+    merged = parts[0].merged(parts[1])
+    assert (parts[0].count, parts[1].count, merged.count) == (len(first), len(second), len(first) + len(second))
+    if merged.count:
+        assert float(merged.mean) == pytest.approx(np.mean(first + second), rel=1e-9, abs=1e-6)
+        assert float(merged.squares) == pytest.approx(np.var(first + second) * merged.count, rel=1e-6, abs=1e-2)

@@ -9,10 +9,11 @@ from services.metrics.parameters import MetricsParameters
 from services.metrics.session_totals import SessionTotals, sides_of
 
 PARAMETERS = MetricsParameters()
+ALL_COUNT = MetricsParameters(least_steady_strides=1000)
 
 
-def table(totals: SessionTotals) -> dict:
-    return {(metric.name, metric.side): metric for metric in totals.metrics(PARAMETERS)}
+def table(totals: SessionTotals, parameters: MetricsParameters = ALL_COUNT) -> dict:
+    return {(metric.name, metric.side): metric for metric in totals.metrics(parameters)}
 
 
 @pytest.fixture
@@ -153,3 +154,67 @@ def test_mean_curves(totals):
     assert max(curves["knee_flexion_left"].spread) == pytest.approx(0.0)
     assert np.mean(curves["pelvis_rotation"].mean) == pytest.approx(0.0, abs=1e-6)
     assert totals([{}] * 2, []).curves(PARAMETERS) == []
+
+
+HALF = {"step_length_m": 0.2, "stride_time_s": 1.4}
+"""The half step beside the other foot that ends a walk."""
+
+
+def test_starting_and_stopping_strides_are_left_out_and_counted(totals):
+    walk = [{"step_length_m": 0.4}, *[{}] * 3, HALF]
+    found = table(totals(walk, walk), PARAMETERS)
+    for side in ("left", "right"):
+        assert found["strides_counted", side].value == 3
+        assert found["strides_starting_or_stopping", side].value == 2
+        assert found["step_length", side].value == pytest.approx(0.6)
+        assert found["step_length", side].spread == pytest.approx(0.0)
+    assert found["stride_time", None].strides == 6
+
+
+def test_all_strides_count_while_too_few_are_steady(totals):
+    walk = [{"step_length_m": 0.4}, *[{}] * 2, HALF]
+    found = table(totals(walk, [{}] * 9), PARAMETERS)
+    assert found["strides_counted", "left"].value == 4
+    assert found["strides_counted", "right"].value == 9
+    assert found["strides_starting_or_stopping", "right"].value == 0
+    assert found["step_length", "left"].value == pytest.approx((0.4 + 0.6 + 0.6 + 0.2) / 4)
+
+
+def test_a_foot_that_is_not_seen_is_not_waited_for(totals):
+    found = table(totals([{}] * 5, []), PARAMETERS)
+    assert found["strides_counted", "left"].value == 3
+    assert found["strides_starting_or_stopping", "right"].value == 0
+
+
+def test_each_walk_of_a_session_has_its_ends(stride):
+    totals = SessionTotals()
+    for index in (0, 1, 2, 3, 7, 8, 9, 10, 11, 15):
+        for side in Side:
+            totals.add(stride(side, index))
+    found = table(totals, PARAMETERS)
+    # 1, 2 and 8, 9, 10 are between strides that they go on from; 15 is a walk of one stride.
+    assert found["strides_counted", "left"].value == 5
+    assert found["strides_starting_or_stopping", "left"].value == 5
+
+
+def test_a_turn_within_a_walk_is_no_end_of_it(totals):
+    walk = [{}, {}, {"turning": True}, {}, {}, {}]
+    found = table(totals(walk, walk), PARAMETERS)
+    assert found["strides_counted", "left"].value == 3
+    assert found["strides_turning", "left"].value == 1
+    assert found["strides_starting_or_stopping", "left"].value == 2
+
+
+def test_a_walk_that_ends_in_a_rejected_stride_leaves_out_that_one_only(totals):
+    walk = [*[{}] * 4, {"valid": False, "rejected_because": "gap"}]
+    found = table(totals(walk, walk), PARAMETERS)
+    assert found["strides_counted", "left"].value == 3
+    assert found["strides_starting_or_stopping", "left"].value == 1
+
+
+def test_reporting_changes_nothing(totals):
+    built = totals([{}] * 6, [HALF] * 6)
+    before = built.snapshot()
+    assert built.metrics(PARAMETERS) == built.metrics(PARAMETERS)
+    built.curves(PARAMETERS)
+    assert built.snapshot() == before

@@ -1,0 +1,67 @@
+"""Moments of every measure and every curve over a set of strides."""
+
+import numpy as np
+
+from schemas.gait import CURVE_POINTS, Stride
+from schemas.vocabulary import LOWER_BODY, Side
+from services.flow.node import State
+from services.metrics.definitions import STRIDE_METRICS, Definition
+from services.metrics.moments import Moments
+
+HEADING = "pelvis_rotation"
+
+
+def sides_of(definition: Definition) -> tuple[str | None, ...]:
+    """The values of `side` that a metric comes with."""
+    return (Side.LEFT.value, Side.RIGHT.value) if definition.per_side else (None,)
+
+
+def side_of_curve(degree_of_freedom: str) -> Side:
+    """Whose strides the mean curve of a joint is taken over; the right foot's for the pelvis."""
+    return Side.LEFT if degree_of_freedom.endswith("_left") else Side.RIGHT
+
+
+class Sums:
+    """Running sums; their size does not grow with the number of strides."""
+
+    def __init__(self) -> None:
+        self.scalars = {
+            (definition.name, side): Moments.empty() for definition in STRIDE_METRICS for side in sides_of(definition)
+        }
+        self.curves = {dof.name: Moments.empty(CURVE_POINTS) for dof in LOWER_BODY}
+        self.strides = dict.fromkeys(Side, 0)
+
+    def add(self, stride: Stride) -> None:
+        """Take one stride."""
+        self.strides[stride.side] += 1
+        for definition in STRIDE_METRICS:
+            value = None if definition.measure is None else definition.measure(stride)
+            if value is not None:
+                self.scalars[definition.name, stride.side.value if definition.per_side else None].add(value)
+        for name, curve in stride.curves.items():
+            if name in self.curves and side_of_curve(name) is stride.side:
+                position = np.array(curve.position)
+                # Where a person walks to is no property of the gait: the heading is shown about its mean.
+                self.curves[name].add(position - position.mean() if name == HEADING else position)
+
+    def merged(self, other: "Sums") -> "Sums":
+        """The sums over the strides of both; neither changes."""
+        both = Sums()
+        both.scalars = {key: moments.merged(other.scalars[key]) for key, moments in self.scalars.items()}
+        both.curves = {name: moments.merged(other.curves[name]) for name, moments in self.curves.items()}
+        both.strides = {side: number + other.strides[side] for side, number in self.strides.items()}
+        return both
+
+    def snapshot(self) -> State:
+        """All moments and counts."""
+        return {
+            "scalars": [[name, side, moments.snapshot()] for (name, side), moments in self.scalars.items()],
+            "curves": {name: moments.snapshot() for name, moments in self.curves.items()},
+            "strides": {side.value: number for side, number in self.strides.items()},
+        }
+
+    def restore(self, state: State) -> None:
+        """Inverse of `snapshot`."""
+        self.scalars |= {(name, side): Moments.restored(kept) for name, side, kept in state["scalars"]}
+        self.curves |= {name: Moments.restored(kept) for name, kept in state["curves"].items()}
+        self.strides = {side: state["strides"][side.value] for side in Side}
