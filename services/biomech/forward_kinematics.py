@@ -6,8 +6,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from schemas.vocabulary import Segment
-from services.biomech.kernels.kinematics import accelerate, orient
-from services.biomech.kernels.tables import empty_motion
+from services.biomech.kernels.kinematics import place
 from services.biomech.lower_body import SEGMENTS, LowerBodyModel
 
 Array = NDArray[np.float64]
@@ -22,13 +21,11 @@ class Pose(NamedTuple):
 
 def segment_poses(model: LowerBodyModel, position: Array) -> dict[Segment, Pose]:
     """Poses of all segments for joint coordinates (n,), in the model's order."""
-    x = np.zeros((3, len(model.dofs)))
-    x[0] = position
-    motion = empty_motion(len(model.dofs))
-    orient(x, model.body, motion)
-    accelerate(x, model.body, motion)
+    n = len(model.dofs)
+    rotation, origin = np.empty((n, 3, 3)), np.empty((n, 3))
+    place(np.ascontiguousarray(position, dtype=np.float64), model.body, rotation, origin)
     last = {segment: model.last_joint(segment) for segment in SEGMENTS}
-    return {s: Pose(motion.rotation[j].copy(), motion.origin[j].copy()) for s, j in last.items()}
+    return {segment: Pose(rotation[j], origin[j]) for segment, j in last.items()}
 
 
 def ankle_position(model: LowerBodyModel, poses: dict[Segment, Pose], shank: Segment) -> Array:

@@ -32,20 +32,21 @@ def skew(v: Array) -> Array:
 
 def quaternion_from_matrix(R: Array) -> Array:
     """Quaternion (w, x, y, z) of a rotation matrix, w >= 0. Takes the largest component first (Shepperd 1978)."""
-    trace = float(R[0, 0] + R[1, 1] + R[2, 2])
-    largest = int(np.argmax([trace, R[0, 0], R[1, 1], R[2, 2]]))
-    q = np.empty(4)
+    m: list[list[float]] = R.tolist()
+    trace = m[0][0] + m[1][1] + m[2][2]
+    candidates = (trace, m[0][0], m[1][1], m[2][2])
+    largest = candidates.index(max(candidates))
     if largest == 0:
-        q[0] = 1.0 + trace
-        q[1:] = R[2, 1] - R[1, 2], R[0, 2] - R[2, 0], R[1, 0] - R[0, 1]
+        components = [1.0 + trace, m[2][1] - m[1][2], m[0][2] - m[2][0], m[1][0] - m[0][1]]
     else:
         i = largest - 1
         j, k = (i + 1) % 3, (i + 2) % 3
-        q[0] = R[k, j] - R[j, k]
-        q[1 + i] = 1.0 + 2.0 * R[i, i] - trace
-        q[1 + j] = R[j, i] + R[i, j]
-        q[1 + k] = R[k, i] + R[i, k]
-    q /= np.linalg.norm(q)
+        components = [m[k][j] - m[j][k], 0.0, 0.0, 0.0]
+        components[1 + i] = 1.0 + 2.0 * m[i][i] - trace
+        components[1 + j] = m[j][i] + m[i][j]
+        components[1 + k] = m[k][i] + m[i][k]
+    q = np.array(components)
+    q /= math.sqrt(q @ q)
     return -q if q[0] < 0.0 else q
 
 

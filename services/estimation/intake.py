@@ -1,7 +1,8 @@
 """From imu messages of one or several hubs to ticks in the order of captured time."""
 
-from collections.abc import Iterator
+from bisect import bisect_right
 from dataclasses import dataclass
+from operator import itemgetter
 
 import numpy as np
 
@@ -65,9 +66,7 @@ class Intake:
         until_ns = captured_ns
         for place, samples in zip(self._places[hub], batch.sensors, strict=True):
             if place is not None:
-                for sample in self._usable(place, samples, captured_ns):
-                    self._samples.append(sample)
-                    until_ns = max(until_ns, sample.captured_ns)
+                until_ns = max(until_ns, self._keep_usable(place, samples, captured_ns))
         self._reached_ns[hub] = max(self._reached_ns[hub], until_ns)
         self._waiting.append(_Pending(until_ns, hub, captured_ns))
         return self._pass_on(everything=False)
@@ -76,15 +75,20 @@ class Intake:
         """No more messages: what still waits."""
         return self._pass_on(everything=True)
 
-    def _usable(self, place: int, samples: SensorSamples, message_ns: int) -> Iterator[Sample]:
+    def _keep_usable(self, place: int, samples: SensorSamples, message_ns: int) -> int:
+        """Keep what may be used; the time that the message reaches with it."""
+        until_ns, passed_ns, accept = message_ns, self._passed_ns, self.checks.accept
         for captured_ns, rate, force in zip(
             samples.captured_ns, samples.angular_velocity, samples.specific_force, strict=True
         ):
             values = (*rate, *force)
-            if captured_ns <= self._passed_ns and self._is_new(place, captured_ns):
+            if captured_ns <= passed_ns and self._is_new(place, captured_ns):
                 self.checks.refuse(self.sensors[place].name, Reason.LATE)
-            elif self.checks.accept(place, captured_ns, values, message_ns):
-                yield Sample(captured_ns, place, values)
+            elif accept(place, captured_ns, values, message_ns):
+                self._samples.append(Sample(captured_ns, place, values))
+                if captured_ns > until_ns:
+                    until_ns = captured_ns
+        return until_ns
 
     def _is_new(self, place: int, captured_ns: int) -> bool:
         newest_ns = self.checks.records[place].newest_ns
@@ -103,9 +107,10 @@ class Intake:
         return batches
 
     def _complete(self, pending: _Pending) -> TickBatch:
-        self._samples.sort(key=lambda sample: (sample.captured_ns, sample.sensor))
-        ready = [sample for sample in self._samples if sample.captured_ns <= pending.until_ns]
-        del self._samples[: len(ready)]
+        self._samples.sort(key=itemgetter(0, 1))
+        count = bisect_right(self._samples, pending.until_ns, key=itemgetter(0))
+        ready = self._samples[:count]
+        del self._samples[:count]
         self._passed_ns = max(self._passed_ns, pending.until_ns)
         return TickBatch(pending.captured_ns, gather(ready, len(self.sensors), self._same_tick_ns))
 

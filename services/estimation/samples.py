@@ -18,6 +18,8 @@ FORCE = slice(3, 6)
 
 Values = tuple[float, ...]
 """Angular velocity, then specific force: six numbers."""
+SILENT: Values = (0.0,) * 6
+"""Fills the row of a sensor that has no sample in a tick."""
 
 
 class Sample(NamedTuple):
@@ -28,8 +30,7 @@ class Sample(NamedTuple):
     values: Values
 
 
-@dataclass(frozen=True)
-class Tick:
+class Tick(NamedTuple):
     """What the sensors said at one instant. Rows of `samples` (S, 6) count only where `fresh` (S,)."""
 
     captured_ns: int
@@ -47,15 +48,18 @@ class TickBatch:
 
 def gather(samples: Iterable[Sample], sensors: int, same_tick_ns: int) -> tuple[Tick, ...]:
     """Samples in time order become ticks; a sensor that spoke twice starts a new one."""
-    ticks: list[Tick] = []
-    for sample in samples:
-        last = ticks[-1] if ticks else None
-        if last is None or sample.captured_ns - last.captured_ns > same_tick_ns or last.fresh[sample.sensor]:
-            last = Tick(sample.captured_ns, np.zeros((sensors, 6)), np.zeros(sensors, dtype=np.bool_))
-            ticks.append(last)
-        last.samples[sample.sensor] = sample.values
-        last.fresh[sample.sensor] = True
-    return tuple(ticks)
+    groups: list[tuple[int, dict[int, Values]]] = []
+    for captured_ns, sensor, values in samples:
+        if not groups or captured_ns - groups[-1][0] > same_tick_ns or sensor in groups[-1][1]:
+            groups.append((captured_ns, {}))
+        groups[-1][1][sensor] = values
+    return tuple(_tick(captured_ns, spoken, sensors) for captured_ns, spoken in groups)
+
+
+def _tick(captured_ns: int, spoken: dict[int, Values], sensors: int) -> Tick:
+    rows = [spoken.get(sensor, SILENT) for sensor in range(sensors)]
+    fresh = [sensor in spoken for sensor in range(sensors)]
+    return Tick(captured_ns, np.array(rows, dtype=np.float64), np.array(fresh, dtype=np.bool_))
 
 
 def pack_batches(batches: Iterable[TickBatch]) -> State:

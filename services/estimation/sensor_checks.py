@@ -2,7 +2,6 @@
 
 import math
 from collections import Counter
-from collections.abc import Sequence
 from dataclasses import dataclass, field
 from operator import sub
 
@@ -11,18 +10,22 @@ import numpy as np
 from schemas.health import Reason, Rejection
 from schemas.vocabulary import SensorState
 from services.estimation.parameters import CheckParameters
-from services.estimation.samples import FORCE, RATE, Values
+from services.estimation.samples import Values
 from services.flow.node import State, pack_array, unpack_array
 
 NOTHING_YET: Values = (math.nan,) * 6
 
 
-def largest(values: Sequence[float]) -> float:
-    """Largest magnitude; not a number counts as nothing."""
-    return max(map(abs, values))
+def within(values: Values, most_rate: float, most_force: float) -> bool:
+    """No magnitude of the angular velocity or the specific force is larger; not a number is never within."""
+    a, b, c, d, e, f = values
+    return (
+        -most_rate <= a <= most_rate and -most_rate <= b <= most_rate and -most_rate <= c <= most_rate
+        and -most_force <= d <= most_force and -most_force <= e <= most_force and -most_force <= f <= most_force
+    )  # fmt: skip
 
 
-@dataclass
+@dataclass(slots=True)
 class SensorRecord:
     """What is remembered of one sensor."""
 
@@ -51,11 +54,12 @@ class SensorChecks:
 
     def accept(self, sensor: int, captured_ns: int, values: Values, message_ns: int) -> bool:
         """Whether a sample (6,) may be used."""
-        reason = self._reason(self.records[sensor], captured_ns, values, message_ns)
+        record = self.records[sensor]
+        reason = self._reason(record, captured_ns, values, message_ns)
         if reason is not None:
             self.refuse(self.names[sensor], reason)
             return False
-        self.records[sensor].usable_ns = captured_ns
+        record.usable_ns = captured_ns
         return True
 
     def _reason(self, record: SensorRecord, captured_ns: int, values: Values, message_ns: int) -> Reason | None:
@@ -64,19 +68,19 @@ class SensorChecks:
             return Reason.OUT_OF_RANGE
         if record.newest_ns is not None and captured_ns <= record.newest_ns:
             return Reason.CLOCK_BACKWARDS
-        if not all(map(math.isfinite, values)):
+        plausible = within(values, limits.largest_rate, limits.largest_force)
+        if not plausible and not all(map(math.isfinite, values)):
             return Reason.NOT_FINITE
         record.newest_ns = captured_ns
         before, record.values = record.values, values
         record.repeats = record.repeats + 1 if values == before else 0
-        if largest(values[RATE]) > limits.largest_rate or largest(values[FORCE]) > limits.largest_force:
+        if not plausible:
             return Reason.OUT_OF_RANGE
         if record.repeats >= limits.stuck_after:
             return Reason.STUCK
         # A lone jump is a broken sample; when the next one stays there, it was a real change.
-        jump = tuple(map(sub, values, before))
-        jumps = largest(jump[RATE]) > limits.rate_jump or largest(jump[FORCE]) > limits.force_jump
-        record.jumped = jumps and not record.jumped
+        jumps = not within(tuple(map(sub, values, before)), limits.rate_jump, limits.force_jump)
+        record.jumped = jumps and not record.jumped and not math.isnan(before[0])
         return Reason.OUT_OF_RANGE if record.jumped else None
 
     def is_silent(self, sensor: int, now_ns: int) -> bool:

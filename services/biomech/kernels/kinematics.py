@@ -24,7 +24,7 @@ def turn(R: Array, parent: int, j: int, k: int, angle: float) -> None:
 
 @kernel
 def place(position: Array, body: Body, rotation: Array, origin: Array) -> None:
-    """Where the bodies behind the joints are: R_world_from_segment (n, 3, 3) and origins (n, 3) m, nothing of motion."""
+    """Where the bodies behind the joints are: R_world_from_segment (n, 3, 3) and origins (n, 3) m, no motion."""
     for j in range(body.parent.size):
         p, k = body.parent[j], body.axis[j]
         turned = 0.0 if j < body.translations else body.sign[j] * position[j]
