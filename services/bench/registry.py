@@ -20,6 +20,13 @@ def step(json_path: Path | None = None) -> Scoreboard:
     return run(json_path)
 
 
+def chain(json_path: Path | None = None) -> Scoreboard:
+    """What a frame of five sensors costs in each node of the plain loop."""
+    from services.bench.chain import run
+
+    return run(json_path)
+
+
 def rhythm(json_path: Path | None = None) -> Scoreboard:
     """Rhythm estimators on random and on walking motions."""
     from services.bench.rhythm import run
@@ -59,6 +66,7 @@ def events(json_path: Path | None = None, *subject: str) -> Scoreboard:
 
 SCOREBOARDS: dict[str, Callable[..., Scoreboard]] = {
     "accuracy": accuracy,
+    "chain": chain,
     "events": events,
     "joukov": joukov,
     "recovery": recovery,
