@@ -31,7 +31,8 @@ class AdaptiveNoise:
     By itself it harms: a walker's strides differ by 2 to 5 % and how the next one differs is not known beforehand, so
     that a filter told to expect little is late exactly where it matters (acceleration of knees up to twice as
     wrong). Therefore it is a filter of its own that has to prove itself against the rhythm with constant noise through
-    the innovation gate. So guarded it was harmless on every kind of motion of `ambula bench joukov`, but it costs that third filter.
+    the innovation gate. So guarded it was harmless on every kind of motion of `ambula bench joukov`, but
+    it costs that third filter.
     """
 
     factor: float = 4.0
