@@ -17,6 +17,10 @@ class JointState(Payload):
     position_std: list[list[float]] = Field(description="rad, n x dof, one standard deviation")
     velocity_std: list[list[float]] = Field(description="rad/s, n x dof, one standard deviation")
     valid: list[bool] = Field(description="per dof: false while no sensor observes it or before calibration")
+    observed: list[Segment] = Field(
+        description="segments with a sensor of their own: the whole chain of angles gives their tilt in the world "
+        "rightly, also where the joints between them and the pelvis are not valid one by one",
+    )
 
 
 class SensorAlignment(Payload):

@@ -1,5 +1,6 @@
 """Agreement of an estimated angle with a measured one, and the estimates of a recording through the live nodes."""
 
+import math
 from collections.abc import Callable
 from typing import NamedTuple
 
@@ -47,17 +48,24 @@ def best_score(estimate: Array, truth: Array, frames: NDArray[np.int64]) -> Scor
     return min((score(estimate, truth, frames, shift) for shift in SHIFTS), key=lambda s: s.offset_removed_deg)
 
 
-def estimate_angles(spec: str, estimator: str, build_node: Callable[[SessionDescription], Node] = build) -> Array:
+def estimate_angles(
+    spec: str,
+    estimator: str,
+    build_node: Callable[[SessionDescription], Node] = build,
+    during_s: tuple[float, float] = (0.0, math.inf),
+) -> Array:
     """Joint angles (frames, 15) in degrees through ingest and node, NaN where there is none.
 
-    For a recording whose sensors share one rate: frame i was captured i / rate after the start.
+    For a recording whose sensors share one rate: frame i was captured i / rate after the start. The node is shown
+    what was captured `during_s`, from and before.
     """
     source = open_source(spec, session="accuracy", estimator=estimator)
     description = source.describe()
     chain = Chain([HostedNode("estimation", description.session, build_node(description))])
     rows: list[tuple[int, list[float]]] = []
     for message in iter_messages(source):
-        for produced in chain.push(message):
+        is_shown = during_s[0] <= message.envelope.captured_ns / 1e9 < during_s[1]
+        for produced in chain.push(message) if is_shown or message.envelope.final else ():
             if produced.stream.signal is JOINT_STATE and isinstance(produced.payload, JointState):
                 rows += zip(produced.payload.captured_ns, produced.payload.position, strict=True)
     return _on_frames(rows, description.hubs[0].sensors[0].rate_hz)
@@ -66,7 +74,7 @@ def estimate_angles(spec: str, estimator: str, build_node: Callable[[SessionDesc
 def _on_frames(rows: list[tuple[int, list[float]]], rate_hz: float) -> Array:
     frames = [round(captured_ns * rate_hz / 1e9) for captured_ns, _ in rows]
     angles = np.full((max(frames, default=0) + 1, len(LOWER_BODY)), np.nan)
-    angles[frames] = np.degrees([position for _, position in rows])
+    angles[frames] = np.degrees(np.array([position for _, position in rows]).reshape(-1, len(LOWER_BODY)))
     return angles
 
 

@@ -12,6 +12,7 @@ from schemas.rhythm import Rhythm
 from schemas.session import SessionDescription
 from schemas.signals import JOINT_STATE, RHYTHM
 from schemas.vocabulary import LOWER_BODY, Side
+from services.biomech.lower_body import SEGMENTS
 from services.flow.message import Envelope, Message, Stream
 from services.ingest.synthetic.gait import WalkingBody
 from services.ingest.synthetic.parameters import WalkParameters
@@ -55,6 +56,7 @@ class JointTrack:
             position_std=np.full(shape, self.position_std).tolist(),
             velocity_std=np.zeros(shape).tolist(),
             valid=list(valid),
+            observed=list(SEGMENTS) if all(valid) else [],
         )
 
     def _rhythm(self, captured_ns: list[int], span: slice) -> Payload:

@@ -15,6 +15,7 @@ from services.estimation.parameters import EstimationParameters
 from services.estimation.samples import TickBatch, pack_batches, unpack_batches
 from services.estimation.sensor_checks import SensorChecks
 from services.estimation.standing import StandingDetector, StandingReference, pack_reference, unpack_reference
+from services.estimation.walking_reference import lean, refer_to_walking
 from services.flow.node import State, pack_array, unpack_array
 
 Array = NDArray[np.float64]
@@ -24,7 +25,8 @@ class Calibrator:
     """Keeps what may have to be estimated later, until the body is calibrated.
 
     While the person stands, the last `before_walking_s` are kept. From then on every batch is kept, at most
-    `give_up_after_s`: once the axes are clear (some seconds into the walk) the filter runs over all of them.
+    `give_up_after_s`: once the axes are clear (some seconds into the walk) the filter runs over all of them. Where
+    nobody has stood for `walking.wait_s`, straight walking takes the place of standing.
     """
 
     def __init__(
@@ -37,6 +39,7 @@ class Calibrator:
         self.standing = StandingDetector(self.sensors, description.standing, parameters.standing)
         self.batches: list[TickBatch] = []
         self._looked_ns = 0
+        self._first_ns: int | None = None
         self._axes: dict[int, FlexionAxis] = {}
         self._refused: list[int] = []
         self._begun: StandingReference | None = None
@@ -68,6 +71,10 @@ class Calibrator:
         for tick in batch.ticks:
             self.standing.add(tick)
         self.batches.append(batch)
+        if self._first_ns is None:
+            self._first_ns = batch.captured_ns
+        if self._nobody_stood():
+            return self._wait_without_standing(batch.captured_ns)
         reference = self._moving_since(self.standing.reference)
         if reference is None:
             self._keep(self.parameters.before_walking_s, batch.captured_ns)
@@ -78,6 +85,37 @@ class Calibrator:
             return None
         self._looked_ns = batch.captured_ns
         return self._look(reference)
+
+    def _nobody_stood(self) -> bool:
+        return self.standing.reference is None and not self.standing.marked and not self.standing.is_still
+
+    def _wait_without_standing(self, now_ns: int) -> Calibrated | None:
+        """Standing is still hoped for; after a while, walking will do."""
+        assert self._first_ns is not None
+        self._keep(self.parameters.alignment.give_up_after_s, now_ns)
+        is_due = now_ns - self._looked_ns >= self.parameters.alignment.look_every_s * 1e9
+        if now_ns - self._first_ns < self.parameters.walking.wait_s * 1e9 or not is_due:
+            return None
+        self._looked_ns = now_ns
+        return self._from_walking()
+
+    def _from_walking(self) -> Calibrated | None:
+        """The calibration from the straight strides at hand. What was kept before them is dropped."""
+        p = self.parameters
+        ticks = [tick for batch in self.batches for tick in batch.ticks]
+        walked = refer_to_walking(self.sensors, ticks, p.walking, p.standing)
+        if walked is None:
+            return None
+        search = AxisSearch(self.sensors, walked.reference, p.alignment)
+        used = [tick for tick in ticks if tick.captured_ns >= walked.from_ns]
+        axes = search.axes(np.array([tick.samples for tick in used]), np.array([tick.fresh for tick in used]))
+        alignment = lean(search.align(axes), self.sensors, p.walking)
+        if not search.is_moving(axes) or not alignment.aligned.any():
+            return None
+        self.batches = [
+            batch for batch in self.batches if batch.ticks and batch.ticks[-1].captured_ns >= walked.from_ns
+        ]
+        return Calibrated(alignment, walked.reference.gyro_bias, from_walking=True)
 
     def _moving_since(self, newest: StandingReference | None) -> StandingReference | None:
         """The standing from which the movement at hand began; None before it.
@@ -99,12 +137,16 @@ class Calibrator:
 
     def finish(self) -> Calibrated | None:
         """The stream has ended: calibrate with what there is, if there was a standing and a movement."""
+        if self.standing.reference is None and not self.standing.marked:
+            return self._from_walking()
         if self._begun is None or not self._axes:
             return None
         return self._calibrated(self._begun, AxisSearch(self.sensors, self._begun, self.parameters.alignment))
 
     def _keep(self, seconds: float, now_ns: int) -> None:
-        oldest_ns = now_ns - round(seconds * 1e9)
+        self._keep_from(now_ns - round(seconds * 1e9))
+
+    def _keep_from(self, oldest_ns: int) -> None:
         first = next((i for i, batch in enumerate(self.batches) if batch.captured_ns >= oldest_ns), 0)
         del self.batches[:first]
 
@@ -142,6 +184,7 @@ class Calibrator:
             "standing": self.standing.snapshot(),
             "batches": pack_batches(self.batches),
             "looked_ns": self._looked_ns,
+            "first_ns": self._first_ns,
             "axes_of": [s for s, _ in axes],
             "axes": pack_array(np.array(table).reshape(-1, 7)),
             "refused": self._refused,
@@ -153,6 +196,7 @@ class Calibrator:
         self.standing.restore(state["standing"])
         self.batches = unpack_batches(state["batches"], len(self.sensors))
         self._looked_ns, self._refused = state["looked_ns"], list(state["refused"])
+        self._first_ns = state["first_ns"]
         self._begun = None if state["begun"] is None else unpack_reference(state["begun"])
         rows = unpack_array(state["axes"])
         self._axes = {
@@ -169,6 +213,7 @@ def pack_calibrated(calibrated: Calibrated) -> State:
         "quality": pack_array(alignment.quality),
         "aligned": [bool(flag) for flag in alignment.aligned],
         "gyro_bias": pack_array(calibrated.gyro_bias),
+        "from_walking": calibrated.from_walking,
     }
 
 
@@ -176,4 +221,4 @@ def unpack_calibrated(state: State) -> Calibrated:
     """Inverse of `pack_calibrated`."""
     aligned = np.array(state["aligned"], dtype=np.bool_)
     alignment = Alignment(unpack_array(state["frames"]), unpack_array(state["quality"]), aligned)
-    return Calibrated(alignment, unpack_array(state["gyro_bias"]))
+    return Calibrated(alignment, unpack_array(state["gyro_bias"]), state["from_walking"])

@@ -41,6 +41,7 @@ class Calibrated:
 
     alignment: Alignment
     gyro_bias: Array  # (S, 3) rad/s
+    from_walking: bool = False  # nobody stood: the filter starts in motion, and zero is a population's
 
 
 class LowerBodyFilter:
@@ -68,6 +69,7 @@ class LowerBodyFilter:
         self._rhythm_joints = [self.model.names.index(name) for name in RHYTHM_CHANNELS]
         self._driver, self._driver_joints = _driver_of(description.estimator, self.model, self._rhythm)
         self._jerk = np.zeros(len(self.model.dofs))
+        self._starts_moving = calibrated.from_walking
         self._ahead = _ahead(parameters.sample_delay / max((sensor.rate_hz for sensor in sensors), default=100.0))
         self._last_ns: int | None = None
         self._heard_ns: list[int] = []
@@ -77,6 +79,8 @@ class LowerBodyFilter:
         self._missing = self.unseen
         self.valid = self._valid_without(self._missing)
         """Per LOWER_BODY dof, after the newest tick."""
+        self.observed = self._observed_without(self._missing)
+        """Segments whose own sensor speaks and is not in doubt."""
         self._rest = self._rest_without(self.unseen)
 
     def _listen(self, tick: Tick) -> frozenset[Segment]:
@@ -109,6 +113,7 @@ class LowerBodyFilter:
         if missing != self._missing:
             self._missing = missing
             self.valid = self._valid_without(missing)
+            self.observed = self._observed_without(missing)
 
     def _valid_without(self, missing: frozenset[Segment]) -> list[bool]:
         """Per LOWER_BODY dof: both segments of the joint are seen, and the model has the dof."""
@@ -118,12 +123,18 @@ class LowerBodyFilter:
             for segment, index in zip(joints, self.model.reported, strict=True)
         ]
 
+    @staticmethod
+    def _observed_without(missing: frozenset[Segment]) -> list[Segment]:
+        return [segment for segment in SEGMENTS if segment not in missing]
+
     def fuse(self, tick: Tick) -> Row:
         """Advance to the tick and take its samples in."""
         dt_s = 0.0 if self._last_ns is None else (tick.captured_ns - self._last_ns) / 1e9
         if dt_s > self.parameters.longest_step_s:
             self.ekf.settle()
             self._jerk[:] = 0.0
+            self._returned_ns = dict.fromkeys(SEGMENTS, tick.captured_ns)
+        if self._last_ns is None and self._starts_moving:
             self._returned_ns = dict.fromkeys(SEGMENTS, tick.captured_ns)
         unseen = self._listen(tick)
         if unseen != self.unseen:
@@ -196,6 +207,7 @@ class LowerBodyFilter:
         self._returned_ns = {Segment(name): ns for name, ns in state["returned_ns"].items()}
         self._missing = self.unseen | frozenset(self._returned_ns)
         self.valid, self._rest = self._valid_without(self._missing), self._rest_without(self.unseen)
+        self.observed = self._observed_without(self._missing)
         self._rhythm.restore(state["rhythm"])
         if self._driver is not None and state["driver"] is not None:
             self._driver.restore(state["driver"])

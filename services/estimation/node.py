@@ -10,6 +10,7 @@ from schemas.kinematics import Calibration, JointState, SensorAlignment
 from schemas.rhythm import Rhythm
 from schemas.session import SessionDescription
 from schemas.signals import CALIBRATION, JOINT_STATE, LIVE_POSE, RHYTHM, Signal
+from schemas.vocabulary import Segment
 from services.biomech.rotations import quaternion_from_matrix
 from services.estimation.calibrator import Calibrator, pack_calibrated, unpack_calibrated
 from services.estimation.intake import Intake
@@ -21,6 +22,10 @@ from services.flow.message import Message, Output, Stream
 from services.flow.node import Node, State
 
 MODEL = "lower_body"
+POPULATION = (
+    "population: mean posture of healthy adults' walking; nobody stood still, so angles are right as changes, "
+    "and their zero is uncertain by 5 to 10 degrees"
+)
 
 
 class EstimationNode:
@@ -116,25 +121,31 @@ class EstimationNode:
         return Calibration(
             model=MODEL,
             estimator=self._description.estimator,
-            method="standing, marked by the operator + walking" if self._description.standing else "standing+walking",
-            datum="quiet standing: pelvis level, thighs and shanks vertical",
+            method=self._method(calibrated),
+            datum=POPULATION if calibrated.from_walking else "quiet standing: pelvis level, thighs and shanks vertical",
             quality=min(sensor.quality for sensor in sensors),
             sensors=sensors,
         )
+
+    def _method(self, calibrated: Calibrated) -> str:
+        if calibrated.from_walking:
+            return "walking alone"
+        return "standing, marked by the operator + walking" if self._description.standing else "standing+walking"
 
     def _estimate(self, running: LowerBodyFilter, ticks: Iterable[Tick]) -> list[Output]:
         """Joint states with their rhythm, a message for each run of equal validity, and the picture when it is due."""
         outputs: list[Output] = []
         rows: list[Row] = []
         valid: list[bool] = []
+        observed: list[Segment] = []
         for tick in ticks:
             row = running.fuse(tick)
-            if rows and running.valid != valid:
-                outputs += _estimates(rows, valid)
+            if rows and (running.valid != valid or running.observed != observed):
+                outputs += _estimates(rows, valid, observed)
                 rows = []
             rows.append(row)
-            valid = running.valid
-        return [*outputs, *_estimates(rows, valid), *self._picture(running, rows[-1])] if rows else []
+            valid, observed = running.valid, running.observed
+        return [*outputs, *_estimates(rows, valid, observed), *self._picture(running, rows[-1])] if rows else []
 
     def _picture(self, running: LowerBodyFilter, row: Row) -> list[Output]:
         """The picture of the newest row, when its time has come. None while catching up: nobody could watch it."""
@@ -177,12 +188,13 @@ class EstimationNode:
         self._next_live_ns = state["next_live_ns"]
 
 
-def _estimates(rows: list[Row], valid: list[bool]) -> list[Output]:
+def _estimates(rows: list[Row], valid: list[bool], observed: list[Segment]) -> list[Output]:
     newest_ns = rows[-1].captured_ns
-    return [Output(JOINT_STATE, newest_ns, _joint_state(rows, valid)), Output(RHYTHM, newest_ns, _rhythm(rows))]
+    joints = _joint_state(rows, valid, observed)
+    return [Output(JOINT_STATE, newest_ns, joints), Output(RHYTHM, newest_ns, _rhythm(rows))]
 
 
-def _joint_state(rows: list[Row], valid: list[bool]) -> JointState:
+def _joint_state(rows: list[Row], valid: list[bool], observed: list[Segment]) -> JointState:
     return JointState(
         model=MODEL,
         captured_ns=[row.captured_ns for row in rows],
@@ -192,6 +204,7 @@ def _joint_state(rows: list[Row], valid: list[bool]) -> JointState:
         position_std=[row.position_std for row in rows],
         velocity_std=[row.velocity_std for row in rows],
         valid=valid,
+        observed=observed,
     )
 
 

@@ -55,6 +55,25 @@ class AlignmentParameters:
 
 
 @dataclass(frozen=True)
+class WalkingParameters:
+    """How a session is calibrated in which nobody stood still."""
+
+    wait_s: float = 10.0  # s after the first sample during which standing is waited for
+    fewest_strides: int = 3  # regular straight strides; a short walk has no more
+    cutoff_hz: float = 5.0  # Hz, gyro low-pass before swings are counted
+    slowest_swing: float = 1.0  # rad/s of a shank or thigh in swing; slow walkers stay above
+    shortest_stride_s: float = 0.6  # s
+    longest_stride_s: float = 3.0  # s; sit-to-stand repeats every 3.5 s
+    straightest: float = 0.5  # rad that a sensor may have turned over one stride
+    return_error: float = 0.2  # rad by which a sensor is turned between the ends of whole strides: biases told by a
+    # short walk are not believed; at 0.05 the hip with the turn is 0.8 deg worse
+    gravity_tolerance: float = 2.5  # m/s^2; the mean over a swinging sensor's directions is shorter than gravity
+    thigh_lean: float = 0.087  # rad (5 deg) forward: mean of healthy adults' walking over the stride
+    shank_lean: float = -0.26  # rad (15 deg) back, the same; their difference is the mean knee flexion
+    best_quality: float = 0.4  # of a sensor whose zero is a population's
+
+
+@dataclass(frozen=True)
 class FilterParameters:
     """The filter beside its noise."""
 
@@ -81,6 +100,7 @@ class EstimationParameters:
     checks: CheckParameters = field(default_factory=CheckParameters)
     standing: StandingParameters = field(default_factory=StandingParameters)
     alignment: AlignmentParameters = field(default_factory=AlignmentParameters)
+    walking: WalkingParameters = field(default_factory=WalkingParameters)
     filter: FilterParameters = field(default_factory=FilterParameters)
     lateness_s: float = 0.04  # s of captured time that one hub may lag behind another before it is not waited for
     same_tick_s: float = 0.0005  # s, samples closer than this are fused at the time of the earliest

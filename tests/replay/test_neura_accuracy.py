@@ -9,8 +9,10 @@ from services.bench.accuracy import (
     RECORDINGS,
     STRAIGHT,
     WITH_TURN,
+    absolute_mean_of,
     figures,
     mean_of,
+    without_standing,
 )
 from services.bench.joint_scores import best_score, estimate_angles
 from services.bench.neura_truth import collect_truth
@@ -56,3 +58,10 @@ def test_sides_are_not_exchanged(angles, truth) -> None:
     own = best_score(angles[:, column], truth.knee_plug_in_gait[Side.LEFT], STRAIGHT)
     other = best_score(angles[:, column], truth.knee_plug_in_gait[Side.RIGHT], STRAIGHT)
     assert own.offset_removed_deg < 0.3 * other.offset_removed_deg
+
+
+def test_without_standing_the_shape_is_as_good(truth) -> None:
+    scores = without_standing(SPEC, truth)
+    assert mean_of(scores["knee PiG", "straight"]) < 3.1
+    assert mean_of(scores["hip", "straight"]) < 2.5
+    assert absolute_mean_of(scores["knee PiG", "straight"]) < 6.0

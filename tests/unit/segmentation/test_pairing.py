@@ -65,6 +65,7 @@ def test_snapshot_keeps_what_waits():
         position_std=[[0.4]],
         velocity_std=[[0.5]],
         valid=[True],
+        observed=[],
     )
     waiting.add_joints(full)
     resumed = Pairing()
