@@ -1,5 +1,7 @@
 """Messages become arrays, and what cannot be used is counted."""
 
+from operator import lt
+
 import numpy as np
 from numpy.typing import NDArray
 
@@ -45,18 +47,26 @@ class Intake:
             self._reject(JOINTS_FROM, Reason.OUT_OF_RANGE, rows)
             return None
         captured_ns = np.array(joints.captured_ns, dtype=np.int64)
-        newest = np.maximum.accumulate(np.concatenate([[self._newest_ns], captured_ns]))
-        later = captured_ns > newest[:-1]
-        use = later & (np.abs(tables) < _LIMITS).all(axis=(0, 2))
-        if not use.all():
-            self._reject(JOINTS_FROM, Reason.CLOCK_BACKWARDS, int(np.sum(~later)))
-            self._reject(JOINTS_FROM, Reason.OUT_OF_RANGE, int(np.sum(later & ~use)))
-        if not use.any():
+        use = self._usable(captured_ns, tables)
+        if use is None:
             return None
         self._newest_ns = int(captured_ns[use][-1])
         position, velocity, std = tables[:, use]
         phase = self._phase(rhythm, rows)[use]
         return Batch(captured_ns[use], position, phase, std, np.array(joints.valid)), velocity
+
+    def _usable(self, captured_ns: NDArray[np.int64], tables: Array) -> NDArray[np.bool_] | slice | None:
+        """Which rows to use, None for none. Almost always all of them, which is looked at first."""
+        bounded = np.abs(tables) < _LIMITS
+        times = captured_ns.tolist()
+        if all(map(lt, [self._newest_ns, *times], times)) and bounded.all():
+            return slice(None)
+        newest = np.maximum.accumulate(np.concatenate([[self._newest_ns], captured_ns]))
+        later = captured_ns > newest[:-1]
+        use: NDArray[np.bool_] = later & bounded.all(axis=(0, 2))
+        self._reject(JOINTS_FROM, Reason.CLOCK_BACKWARDS, int(np.sum(~later)))
+        self._reject(JOINTS_FROM, Reason.OUT_OF_RANGE, int(np.sum(later & ~use)))
+        return use if use.any() else None
 
     def _phase(self, rhythm: Rhythm | None, rows: int) -> Array:
         if rhythm is None:

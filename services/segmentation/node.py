@@ -37,7 +37,9 @@ class SegmentationNode:
         self._strides = StrideAssembler(parameters, self._body, self._history)
         worn = {sensor.segment for hub in description.hubs for sensor in hub.sensors}
         self._seen_by = [_needed(side, worn) for side in SIDES]
-        self._swings = [_detector(side, worn, parameters) for side in SIDES]
+        self._swings = [
+            ShankSwingDetector(parameters) if needed is None else SwingDetector(parameters) for needed in self._seen_by
+        ]
         self._seen = [False, False]
         self._last_ns: int | None = None
         self._still_since_ns: int | None = None
@@ -65,7 +67,7 @@ class SegmentationNode:
             return []
         batch, velocity = kept
         motion = leg_motion(batch.position, velocity, self._body)
-        seen = [needed is not None and bool(batch.valid[needed].all()) for needed in self._seen_by]
+        seen = [_is_seen(side, needed, joints) for side, needed in zip(SIDES, self._seen_by, strict=True)]
         outputs: list[Output] = []
         for i, captured_ns in enumerate(batch.captured_ns.tolist()):
             if self._last_ns is not None and captured_ns // SECOND_NS != self._last_ns // SECOND_NS:
@@ -149,25 +151,18 @@ class SegmentationNode:
         self._intake.restore(state["intake"])
 
 
-def _is_whole(side: Side, worn: set[Segment]) -> bool:
-    """The leg's place relative to the pelvis is known."""
-    return {Segment.PELVIS, Segment(f"thigh_{side}"), Segment(f"shank_{side}")} <= worn
-
-
-def _detector(side: Side, worn: set[Segment], parameters: SegmentationParameters) -> SwingDetector:
-    return SwingDetector(parameters) if _is_whole(side, worn) else ShankSwingDetector(parameters)
-
-
 def _needed(side: Side, worn: set[Segment]) -> list[int] | None:
-    """Coordinates that are valid while the leg is seen; None when it never is.
-
-    A shank has a known rate in space by itself, but without the thigh no coordinate of its own that could be valid.
-    """
-    if Segment(f"shank_{side}") not in worn:
+    """Coordinates that are valid while the whole leg is seen; None for a leg that does not wear all its sensors."""
+    if not {Segment.PELVIS, Segment(f"thigh_{side}"), Segment(f"shank_{side}")} <= worn:
         return None
-    if _is_whole(side, worn):
-        return [INDEX[name] for name in ("pelvis_tilt", f"hip_flexion_{side}", f"knee_flexion_{side}")]
-    return [INDEX[f"knee_flexion_{side}"]] if Segment(f"thigh_{side}") in worn else []
+    return [INDEX[name] for name in ("pelvis_tilt", f"hip_flexion_{side}", f"knee_flexion_{side}")]
+
+
+def _is_seen(side: Side, needed: list[int] | None, joints: JointState) -> bool:
+    """Either the whole leg is seen or, where it never can be, its shank."""
+    if needed is None:
+        return Segment(f"shank_{side}") in joints.observed
+    return all(joints.valid[index] for index in needed)
 
 
 def build(description: SessionDescription) -> Node:

@@ -6,11 +6,14 @@ import numpy as np
 import pytest
 
 from schemas.gait import GaitEvent, Stride
+from schemas.kinematics import JointState
 from schemas.vocabulary import LOWER_BODY, GaitEventKind, Segment, Side
 from services.bench.joint_walks import joint_walk
+from services.flow.message import Message
 from services.segmentation.node import build
 from services.segmentation.parameters import SegmentationParameters
 from services.segmentation.shank_swing import ShankSwingDetector
+from services.segmentation.strides import SENSOR_MISSING
 
 PARAMETERS = SegmentationParameters()
 IC, TO = GaitEventKind.INITIAL_CONTACT, GaitEventKind.TOE_OFF
@@ -47,13 +50,24 @@ def test_a_slowly_turning_other_leg_does_not_hide_a_swing():
     assert not detector.rotating
 
 
-def with_sensors(query: str, segments: tuple[Segment, ...]):
+def with_sensors(query: str, segments: tuple[Segment, ...], silent_s: tuple[float, float] = (0.0, 0.0)):
+    """A walk, its description with sensors on these segments only, and what estimation says of it.
+
+    No joint is valid. The first of the segments is not observed between the two times.
+    """
     walk = joint_walk(query)
     hubs = [
         hub.model_copy(update={"sensors": [sensor for sensor in hub.sensors if sensor.segment in segments]})
         for hub in walk.description.hubs
     ]
-    return walk, walk.description.model_copy(update={"hubs": hubs})
+    messages = []
+    for message in walk.track.messages(valid=NOTHING_VALID):
+        payload = message.payload
+        if isinstance(payload, JointState):
+            silent = silent_s[0] <= payload.captured_ns[0] * 1e-9 < silent_s[1]
+            payload = payload.model_copy(update={"observed": list(segments[1:] if silent else segments)})
+        messages.append(Message(message.stream, message.envelope, payload))
+    return walk, walk.description.model_copy(update={"hubs": hubs}), messages
 
 
 def run(description, messages, cut: int | None = None):
@@ -71,8 +85,8 @@ WALK = "speed=1.1&seed=3&duration=20"
 
 
 def test_shanks_alone_give_events_and_strides_without_angles():
-    walk, description = with_sensors(WALK, SHANKS)
-    found = run(description, walk.track.messages(valid=NOTHING_VALID))
+    walk, description, messages = with_sensors(WALK, SHANKS)
+    found = run(description, messages)
     strides = [payload for payload in found if isinstance(payload, Stride)]
     for side in Side:
         events = [e.captured_ns * 1e-9 for e in found if isinstance(e, GaitEvent) and (e.side, e.kind) == (side, IC)]
@@ -83,26 +97,30 @@ def test_shanks_alone_give_events_and_strides_without_angles():
 
 
 def test_split_and_resume_with_shanks_alone():
-    walk, description = with_sensors(WALK, SHANKS)
-    messages = walk.track.messages(valid=NOTHING_VALID)
+    _, description, messages = with_sensors(WALK, SHANKS)
     assert run(description, messages, cut=523) == run(description, messages)
 
 
-def test_one_shank_gives_strides_of_one_leg():
-    walk, description = with_sensors(WALK, (Segment.SHANK_RIGHT,))
-    found = run(description, walk.track.messages(valid=NOTHING_VALID))
+def test_a_silent_shank_rejects_the_strides_around_the_silence():
+    _, description, messages = with_sensors(WALK, SHANKS, silent_s=(10.0, 11.0))
+    strides = [p for p in run(description, messages) if isinstance(p, Stride)]
+    for stride in strides:
+        touched = stride.start_ns < 11.0e9 and stride.end_ns > 10.0e9
+        if stride.side is Side.LEFT:
+            assert stride.rejected_because == (SENSOR_MISSING if touched else None)
+        else:
+            assert stride.valid
+
+
+@pytest.mark.parametrize("others", [(), (Segment.THIGH_RIGHT,), (Segment.PELVIS,)])
+def test_one_shank_gives_strides_of_one_leg(others):
+    _, description, messages = with_sensors(WALK, (Segment.SHANK_RIGHT, *others))
+    found = run(description, messages)
     sides = {payload.side for payload in found if isinstance(payload, GaitEvent | Stride)}
     assert sides == {Side.RIGHT}
     assert any(payload.valid for payload in found if isinstance(payload, Stride))
 
 
-def test_a_thigh_and_a_shank_are_seen_while_the_knee_is_valid():
-    walk, description = with_sensors(WALK, (Segment.THIGH_LEFT, Segment.SHANK_LEFT))
-    knee = tuple(dof.name == "knee_flexion_left" for dof in LOWER_BODY)
-    assert any(isinstance(p, Stride) for p in run(description, walk.track.messages(valid=knee)))
-    assert run(description, walk.track.messages(valid=NOTHING_VALID)) == []
-
-
 def test_no_shank_no_events():
-    walk, description = with_sensors(WALK, (Segment.PELVIS, Segment.THIGH_LEFT))
-    assert run(description, walk.track.messages(valid=NOTHING_VALID)) == []
+    _, description, messages = with_sensors(WALK, (Segment.PELVIS, Segment.THIGH_LEFT))
+    assert run(description, messages) == []
