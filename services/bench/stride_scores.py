@@ -86,6 +86,11 @@ class Found:
         """Times of one kind of event, s."""
         return np.array([e.captured_ns * 1e-9 for e in self.events if (e.side, e.kind) == (side, kind)])
 
+    def claimed_ms(self, kind: GaitEventKind) -> float | None:
+        """Mean standard deviation that the events of one kind claim for themselves, ms; None without an event."""
+        claimed = [event.time_std_s for event in self.events if event.kind is kind]
+        return round(float(np.mean(claimed)) * 1e3, 1) if claimed else None
+
     def straight(self) -> Iterable[Stride]:
         """Strides that count."""
         return [stride for stride in self.strides if stride.valid and not stride.turning]

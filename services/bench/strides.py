@@ -97,6 +97,7 @@ def neura_rows(default: Run, baseline: Run) -> list[Row]:
         for truth in ("optical ankles", "reviewed flat foot"):
             matches = [_against(run, kind, optical=truth == "optical ankles") for run in (default, baseline)]
             rows += _timing(f"neura: {_words(kind)} against {truth}", *matches)
+        rows.append(_claimed(f"neura: {_words(kind)}", kind, default, baseline))
     return rows + _lengths("neura", default, baseline)
 
 
@@ -125,6 +126,7 @@ def synthetic_rows(name: str, default: Run, baseline: Run) -> list[Row]:
             value, base = (matched.missed + matched.extra for matched in matches)
             rows.append(informative(f"synthetic {name}: contacts missed or invented", value, "", base))
         rows += _timing(f"synthetic {name}: {_words(kind)}", *matches)
+        rows.append(_claimed(f"synthetic {name}: {_words(kind)}", kind, default, baseline))
     return rows + _lengths(f"synthetic {name}", default, baseline)
 
 
@@ -143,6 +145,11 @@ def _timing(name: str, matched: Matched, baseline: Matched) -> list[Row]:
         informative(bias, matched.bias_ms, "ms", baseline.bias_ms),
         informative(spread, matched.spread_ms, "ms", baseline.spread_ms),
     ]
+
+
+def _claimed(name: str, kind: GaitEventKind, default: Run, baseline: Run) -> Row:
+    value, base = (run.found.claimed_ms(kind) for run in (default, baseline))
+    return informative(f"{name}, SD that the events claim", value, "ms", base)
 
 
 def _lengths(name: str, default: Run, baseline: Run) -> list[Row]:

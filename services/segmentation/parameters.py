@@ -21,11 +21,12 @@ class SegmentationParameters:
     toe_off_after_hindmost_s: float = 0.037
     """s from the hindmost ankle to toe-off; between the two sources above."""
     contact_std_s: float = 0.02
-    """s, one standard deviation of a contact."""
+    """s, one standard deviation of a contact: 12 ms of the rule against plates and 9 ms of the estimate against optical
+    ankles make 15; between two manners of walking the constant itself moves by as much."""
     resting_contact_std_s: float = 0.05
     """s, the same for a contact placed by the end of the rotation; 19 ms on the plates, but in steps that go on."""
     toe_off_std_s: float = 0.03
-    """s, one standard deviation of a toe-off."""
+    """s, one standard deviation of a toe-off: likewise 16 and 23 ms make 28."""
 
     shank_contact_after_swing_s: float = 0.045
     """s from the end of the shank's forward rotation to contact, where the shank alone is known; force plates, the

@@ -63,3 +63,13 @@ def test_only_strides_with_a_length_are_compared():
     np.testing.assert_allclose(found.times_s(Side.LEFT, IC), [5e-9])
     length, speed = length_errors(found, truth(ankle_left_x=[0.0]))
     assert len(length) == len(speed) == 0
+
+
+def test_the_claimed_deviation_is_a_mean_over_both_feet():
+    found = Found(
+        [
+            GaitEvent(kind=IC, side=side, captured_ns=1, time_std_s=std)
+            for side, std in ((Side.LEFT, 0.02), (Side.RIGHT, 0.05))
+        ]
+    )
+    assert (found.claimed_ms(IC), found.claimed_ms(TO)) == (35.0, None)
