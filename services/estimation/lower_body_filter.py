@@ -66,7 +66,7 @@ class LowerBodyFilter:
         mounts = [_mount(sensor, R) for sensor, R in zip(sensors, frames, strict=True)]
         self.ekf = LowerBodyEkf(self.model, mounts, calibrated.gyro_bias, parameters.measurement, parameters.noise)
         self._rhythm = TrustedRhythm(len(RHYTHM_CHANNELS))
-        self._rhythm_joints = [self.model.names.index(name) for name in RHYTHM_CHANNELS]
+        self._rhythm_joints = np.array([self.model.names.index(name) for name in RHYTHM_CHANNELS])
         self._driver, self._driver_joints = _driver_of(description.estimator, self.model, self._rhythm)
         self._jerk = np.zeros(len(self.model.dofs))
         self._starts_moving = calibrated.from_walking
@@ -166,11 +166,11 @@ class LowerBodyFilter:
 
     def _follow_rhythm(self, dt_s: float) -> RhythmReading:
         velocity = self.ekf.x[1]
-        reading = self._rhythm.step(velocity[self._rhythm_joints], dt_s)
+        reading = self._rhythm.step(velocity.take(self._rhythm_joints), dt_s)
         if self._driver is not None:
             source = reading if self._driver is self._rhythm else self._driver.step(velocity[self._driver_joints], dt_s)
             bound = self.parameters.longest_jerk
-            self._jerk[self._driver_joints] = np.clip(source.jerk, -bound, bound)
+            self._jerk[self._driver_joints] = np.minimum(np.maximum(source.jerk, -bound), bound)
         return reading
 
     def _row(self, captured_ns: int, reading: RhythmReading) -> Row:
