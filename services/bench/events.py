@@ -13,6 +13,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from schemas.vocabulary import GaitEventKind
+from services.bench.foot_events import foot_rows
 from services.bench.force_plates import PlateWalk, manifest_of, plate_walks
 from services.bench.scoreboard import Row, Scoreboard, at_least, at_most, informative
 from services.bench.stride_scores import Matched, match, together
@@ -40,15 +41,19 @@ class Judged(NamedTuple):
 
 
 def run(json_path: Path | None = None, subject: str = "all") -> Scoreboard:
-    """Score the events of the subject S01, of S05, or of both."""
-    if subject not in (TUNED, SCORED, "all"):
-        raise ValueError(f"no force plates of {subject!r}: choose {TUNED}, {SCORED} or all")
+    """Score the events of the subject S01, of S05, of the `feet` of other people, or of all."""
+    if subject not in (TUNED, SCORED, "feet", "all"):
+        raise ValueError(f"no events of {subject!r}: choose {TUNED}, {SCORED}, feet or all")
     rows: list[Row] = []
     for name in (TUNED, SCORED):
         if subject in (name, "all"):
             rows += subject_rows(name)
+    if subject in ("feet", "all"):
+        rows += foot_rows()
     note = f"the constants were chosen on {TUNED}, the instants that they are added to on both"
-    scoreboard = Scoreboard("gait events of two shank sensors against force plates", rows, note)
+    scoreboard = Scoreboard(
+        "gait events of shanks against force plates, of feet against reviewed movements", rows, note
+    )
     if json_path is not None:
         scoreboard.write_json(json_path)
     return scoreboard
