@@ -21,7 +21,9 @@ Array = NDArray[np.float64]
 
 NOTE = """Means of both sides. Each side's shift between sensor and camera clocks is one constant in -3..+3 samples.
 Baseline: VQF per sensor with headings tied at the joints. The truths themselves differ by 1.9 (right knee) and 4.2
-(left knee) deg rms; one person and two or three strides each way: differences below 0.2 deg mean nothing."""
+(left knee) deg rms; one person and two or three strides each way: differences below 0.2 deg mean nothing.
+Without standing: the node sees the walk alone; scored from 1 s after its first estimate. How little it believes biases
+told by walking was set on this recording."""
 
 RECORDINGS = {"neura": "neura_s02_walk", "neura_midshank": "neura_s02_walk_midshank"}
 FIXED_SHIFT = 0

@@ -22,7 +22,8 @@ SUBJECT = "kam"
 NOTE = """Ten right steps of one person on a treadmill, 1 s each, estimated offline from their quietest instant to both
 ends; the live node needs standing or whole strides. Mounting as documented: y up along the segment, z out of the skin;
 flexion about -x. Zero = the sensors' own y axes, truth = lines between joint centres (hip after
-Bell 1990). accel_std was chosen by the error of steps 0-2. No baseline: VQF has no start
+Bell 1990). accel_std was chosen by the error of steps 0-2, the mounting with all in view
+(axes from the gyroscopes: 2.65). No baseline: VQF has no start
 within a step."""
 CHOSEN_ON, OTHERS = range(3), range(3, 10)
 UP = np.array([0.0, 1.0, 0.0])

@@ -5,7 +5,6 @@ import pytest
 
 from schemas.vocabulary import LOWER_BODY, Side
 from services.bench.accuracy import (
-    FLOORS,
     RECORDINGS,
     STRAIGHT,
     WITH_TURN,
@@ -20,6 +19,12 @@ from services.ingest.data import find_data
 from services.ingest.errors import MissingFile
 
 SPEC = RECORDINGS["neura"]
+FLOORS = {
+    ("knee PiG", "straight"): 3.1, ("knee PiG", "with turn"): 3.4,
+    ("knee joint centres", "straight"): 2.85, ("knee joint centres", "with turn"): 3.2,
+    ("hip", "straight"): 2.65, ("hip", "with turn"): 3.05,
+}  # fmt: skip
+"""deg, offset removed, mean of both sides: what was reached with a slack of 0.2."""
 
 
 @pytest.fixture(scope="module")
@@ -45,7 +50,7 @@ def test_errors_stay_below_the_floors(angles, truth) -> None:
 def test_absolute_errors_and_correlation(angles, truth) -> None:
     for (label, _), scores in figures(angles, truth).items():
         absolute = np.mean([score.absolute_deg for score in scores.values()])
-        assert absolute < (3.6 if label == "hip" else 5.0)
+        assert absolute < (3.4 if label == "hip" else 4.7)
         assert min(score.correlation for score in scores.values()) > 0.97
 
 
