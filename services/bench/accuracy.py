@@ -41,8 +41,9 @@ WITHOUT_STANDING = {("knee PiG", "straight"): 2.9}
 """deg, offset removed, mean of both sides, where the walk is calibrated from itself."""
 LITERAL = FilterParameters(
     measurement=MeasurementModel(gyro_sees_position=True, accel_sees_motion=True, yaw="world"),
-    noise=NoiseModel(yaw_std=0.1),
+    noise=NoiseModel(accel_std=1.0, yaw_std=0.1),
     soft_knees=False,
+    sample_delay=0.0,
 )
 """The measurement model as published: full Jacobian, dynamic accelerometer, hinge knees, yaw against the world."""
 
