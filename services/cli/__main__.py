@@ -50,7 +50,11 @@ def replay(
     from services.bus.settings import BusSettings
     from services.cli import live, show
 
-    with told(BusUnavailable, live.NotStarted, live.WentSilent, ValueError), Bus.open(BusSettings(), "replay") as bus:
+    with (
+        told(BusUnavailable, live.NotStarted, live.WentSilent, ValueError),
+        Bus.open(BusSettings(), "replay") as bus,
+        live.Watch(bus) as watch,
+    ):
         pace = None if speed == "max" else _positive(speed)
         description = live.start_session(bus, _absolute(path), pace, estimator)
         err.print(f"session {description.session}: {description.title}")
@@ -58,7 +62,7 @@ def replay(
             TextColumn("{task.description}"), BarColumn(), TextColumn("{task.fields[at]}"), console=err
         ) as bar:
             task = bar.add_task("replaying", total=description.duration_s, at="")
-            for news in live.follow(bus, description):
+            for news in watch.follow(description):
                 if isinstance(news, SessionMetrics):
                     out.print(show.metrics_table(news, description.title))
                 else:

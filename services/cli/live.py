@@ -2,13 +2,15 @@
 
 import json
 import queue
+import time
+from collections import deque
 from collections.abc import Iterator
-from typing import Any
+from typing import Any, Self
 
 from schemas.health import Progress
 from schemas.metrics import SessionMetrics
 from schemas.session import SessionDescription
-from schemas.signals import METRICS, command_key, progress_key, stream_key
+from schemas.signals import METRICS, command_key, progress_key, replay_key, stream_key
 from services.bus.connection import Bus
 from services.bus.received import Received
 
@@ -39,31 +41,59 @@ def start_session(bus: Bus, spec: str, speed: float | None, estimator: str | Non
     return SessionDescription.model_validate(answer)
 
 
-def follow(bus: Bus, description: SessionDescription) -> Iterator[float | SessionMetrics]:
-    """Seconds of the session done so far, again and again, and last its final metrics.
+class Watch:
+    """News of all sessions of the site from now on. Make it before a session starts: a short one is soon over."""
 
-    Raises WentSilent when no service says anything about the session for a minute.
-    """
-    arrived: queue.SimpleQueue[Received] = queue.SimpleQueue()
-    site, session = bus.settings.site, description.session
-    handles = [
-        bus.subscribe(stream_key(site, session, METRICS, "*"), arrived.put),
-        bus.subscribe(progress_key(site, session, "metrics"), arrived.put),
-        bus.subscribe(progress_key(site, session, "estimation"), arrived.put),
-    ]
-    try:
+    def __init__(self, bus: Bus) -> None:
+        self._bus = bus
+        self._arrived: queue.SimpleQueue[Received] = queue.SimpleQueue()
+        self._kept: dict[str, deque[Received]] = {}
+        site = bus.settings.site
+        keys = [stream_key(site, "*", METRICS, "*")]
+        keys += [progress_key(site, "*", service) for service in ("estimation", METRICS.producer)]
+        self._handles = [bus.subscribe(key, self._arrived.put) for key in keys]
+
+    def __enter__(self) -> Self:
+        return self
+
+    def __exit__(self, *_: object) -> None:
+        for handle in self._handles:
+            handle.close()
+
+    def follow(self, description: SessionDescription) -> Iterator[float | SessionMetrics]:
+        """Seconds of the session done so far, again and again, and last its final metrics.
+
+        Raises WentSilent when no service says anything about the session for a minute.
+        """
         while True:
+            received = self._next(description.session)
+            if "@progress" not in received.key:
+                metrics = SessionMetrics.model_validate_json(received.payload) if received.payload else None
+            else:
+                progress = Progress.model_validate_json(received.payload)
+                yield progress.captured_ns * 1e-9
+                is_over = progress.ended and progress.service == METRICS.producer
+                metrics = self._ask_final(description.session) if is_over else None
+            if metrics is not None and metrics.final:
+                yield metrics
+                return
+
+    def _next(self, session: str) -> Received:
+        """The session's next news; what comes of other sessions meanwhile is kept for them."""
+        until = time.monotonic() + SILENCE_S
+        while not self._kept.get(session):
             try:
-                received = arrived.get(timeout=SILENCE_S)
+                received = self._arrived.get(timeout=max(0.0, until - time.monotonic()))
             except queue.Empty:
                 raise WentSilent(f"no news of session {session} for {SILENCE_S:.0f} s; see `ambula doctor`") from None
-            if f"/{METRICS.name}/" in received.key and received.payload:
-                metrics = SessionMetrics.model_validate_json(received.payload)
-                if metrics.final:
-                    yield metrics
-                    return
-            elif "@progress" in received.key:
-                yield Progress.model_validate_json(received.payload).captured_ns * 1e-9
-    finally:
-        for handle in handles:
-            handle.close()
+            words = received.key.split("/")
+            of = words[3] if words[2] == "@progress" else words[2]
+            self._kept.setdefault(of, deque()).append(received)
+        return self._kept[session].popleft()
+
+    def _ask_final(self, session: str) -> SessionMetrics | None:
+        """The final metrics from the producer's ring: live messages are never waited for, so one may be lost."""
+        key = replay_key(self._bus.settings.site, session, METRICS, METRICS.producer)
+        answers = [each.payload for each in self._bus.ask(key, {"from": "0", "most": "100000"}) if each.attachment]
+        said = [SessionMetrics.model_validate_json(payload) for payload in answers if payload]
+        return said[-1] if said else None

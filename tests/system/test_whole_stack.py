@@ -35,10 +35,10 @@ class Stack:
 
     def play(self, spec: str, speed: float | None, disturb=None) -> SessionDescription:
         """Play a source to its final metrics; `disturb(supervisor)` runs once a third of it is done."""
-        with Bus.open(self.settings, "test") as bus:
+        with Bus.open(self.settings, "test") as bus, live.Watch(bus) as watch:
             description = live.start_session(bus, spec, speed, "rhythmic_ekf")
             deadline = time.monotonic() + 90
-            for news in live.follow(bus, description):
+            for news in watch.follow(description):
                 assert time.monotonic() < deadline
                 if isinstance(news, SessionMetrics):
                     return description
@@ -121,10 +121,10 @@ def test_nothing_is_lost_when_a_service_is_killed(stack, victim):
 
 def test_two_patients_at_once_equal_each_alone(stack):
     other = "synthetic:walk?speed=0.8&seed=12&duration=24"
-    with Bus.open(stack.settings, "test") as bus:
+    with Bus.open(stack.settings, "test") as bus, live.Watch(bus) as watch:
         descriptions = [live.start_session(bus, spec, 4.0, "rhythmic_ekf") for spec in (WALK, other)]
         for description in descriptions:
-            assert any(isinstance(news, SessionMetrics) for news in live.follow(bus, description))
+            assert any(isinstance(news, SessionMetrics) for news in watch.follow(description))
     same_as_plain_loop(stack, descriptions[0], WALK)
     same_as_plain_loop(stack, descriptions[1], other)
 
