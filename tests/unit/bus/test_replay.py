@@ -22,13 +22,15 @@ def test_a_person_may_leave_the_parameters_out():
     assert parse_question({}) == (Question(None, 0, None), PAGE)
 
 
-def test_a_publisher_numbers_keeps_and_answers(connect):
+def test_a_publisher_numbers_keeps_and_answers(connect, wait_until):
     bus, asker = connect(), connect()
     publisher = StreamPublisher(bus, "s", HUB)
     for number in range(3):
         assert publisher.send(number, ImuBatch(sensors=[])) == Envelope(0, number, number)
     publisher.end(3)
     key = replay_key("test", "s", IMU, "hub")
+    # A server that was declared just now may not be known yet.
+    wait_until(lambda: asker.ask(key))
     answers = asker.ask(key, {"from": "1"})
     envelopes = [Envelope.decode(answer.attachment) for answer in answers[:-1]]
     assert [(one.sequence, one.final) for one in envelopes] == [(1, False), (2, False), (3, True)]
@@ -53,9 +55,10 @@ def test_an_empty_ring_and_an_unknown_session_say_nothing(connect):
     assert asker.ask(replay_key("test", "other", IMU, "hub")) == []
 
 
-def test_a_question_with_words_for_numbers_is_refused(connect):
+def test_a_question_with_words_for_numbers_is_refused(connect, wait_until):
     bus, asker = connect(), connect()
     publisher = StreamPublisher(bus, "s", HUB)
     publisher.end(0)
+    wait_until(lambda: asker.ask(replay_key("test", "s", IMU, "hub")))
     with pytest.raises(RemoteError, match="ValueError"):
         asker.ask(replay_key("test", "s", IMU, "hub"), {"from": "soon"})
