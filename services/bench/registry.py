@@ -8,35 +8,35 @@ from services.bench.scoreboard import Scoreboard
 
 def accuracy(json_path: Path | None = None, *subject: str) -> Scoreboard:
     """Joint angles against optical motion capture, all estimators side by side."""
-    from services.bench.accuracy import run
+    from services.bench.accuracy.board import run
 
     return run(json_path, *subject)
 
 
 def step(json_path: Path | None = None) -> Scoreboard:
     """Time of one filter step, compiled against textbook."""
-    from services.bench.step import run
+    from services.bench.performance.step import run
 
     return run(json_path)
 
 
 def chain(json_path: Path | None = None) -> Scoreboard:
     """What a frame of five sensors costs in each node of the plain loop."""
-    from services.bench.chain import run
+    from services.bench.performance.chain import run
 
     return run(json_path)
 
 
 def rhythm(json_path: Path | None = None) -> Scoreboard:
     """Rhythm estimators on random and on walking motions."""
-    from services.bench.rhythm import run
+    from services.bench.rhythm.board import run
 
     return run(json_path)
 
 
 def joukov(json_path: Path | None = None, motions: str = "100", report: Path | None = None) -> Scoreboard:
     """The Rhythmic EKF against the plain one: the published simulation and the curve over the process noise."""
-    from services.bench.joukov import run
+    from services.bench.joukov.board import run
 
     if not motions.isdecimal():
         raise ValueError(f"joukov takes a number of motions, e.g. 100, not {motions!r}")
@@ -45,21 +45,21 @@ def joukov(json_path: Path | None = None, motions: str = "100", report: Path | N
 
 def recovery(json_path: Path | None = None) -> Scoreboard:
     """What a kill of the archive costs, before and after its restart, and what a flush costs."""
-    from services.bench.recovery import run
+    from services.bench.performance.recovery import run
 
     return run(json_path)
 
 
 def strides(json_path: Path | None = None, *subject: str) -> Scoreboard:
     """Stride counts and event times against reviewed contacts and synthetic walks."""
-    from services.bench.strides import run
+    from services.bench.gait.strides import run
 
     return run(json_path, *subject)
 
 
 def events(json_path: Path | None = None, *subject: str) -> Scoreboard:
     """Initial contact and toe-off of two shank sensors against force plates."""
-    from services.bench.events import run
+    from services.bench.gait.events import run
 
     return run(json_path, *subject)
 

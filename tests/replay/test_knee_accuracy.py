@@ -2,8 +2,8 @@
 
 import pytest
 
-from services.bench.accuracy_knee import KNEES, knee_scores, knee_truth
-from services.bench.joint_scores import estimate_angles
+from services.bench.accuracy.joint_scores import estimate_angles
+from services.bench.accuracy.knee import KNEES, knee_scores, knee_truth
 from services.ingest.data import find_data
 from services.ingest.errors import MissingFile
 

@@ -4,7 +4,9 @@ import numpy as np
 import pytest
 
 from schemas.vocabulary import LOWER_BODY, Side
-from services.bench.accuracy import (
+from services.bench.accuracy.joint_scores import best_score, estimate_angles
+from services.bench.accuracy.neura_truth import collect_truth
+from services.bench.accuracy.walk import (
     RECORDINGS,
     STRAIGHT,
     WITH_TURN,
@@ -13,8 +15,6 @@ from services.bench.accuracy import (
     mean_of,
     without_standing,
 )
-from services.bench.joint_scores import best_score, estimate_angles
-from services.bench.neura_truth import collect_truth
 from services.ingest.data import find_data
 from services.ingest.errors import MissingFile
 

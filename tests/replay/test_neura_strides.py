@@ -5,8 +5,8 @@ from functools import cache
 import pytest
 
 from schemas.vocabulary import GaitEventKind, Side
-from services.bench.stride_scores import length_errors, match, together
-from services.bench.strides import NEURA, Run, through_chain
+from services.bench.gait.stride_scores import length_errors, match, together
+from services.bench.gait.strides import NEURA, Run, through_chain
 from services.ingest.errors import SourceError
 
 WALK_FROM_S, TURN_FROM_S, TURN_TO_S, WALK_TO_S = 11.0, 14.54, 16.50, 21.5

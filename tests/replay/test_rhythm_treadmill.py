@@ -2,7 +2,7 @@
 
 import pytest
 
-from services.bench.rhythm_treadmill import load_shank_rates, score_cadence, swing_peaks
+from services.bench.rhythm.treadmill import load_shank_rates, score_cadence, swing_peaks
 from services.biomech.rhythm.trusted import TrustedRhythm
 from services.ingest.errors import MissingFile
 

@@ -3,10 +3,10 @@
 import pytest
 
 from schemas.vocabulary import GaitEventKind, Side
-from services.bench.events import SCORED, detected_share, judge
-from services.bench.force_plates import plate_walks
-from services.bench.stride_scores import together
-from services.bench.strides import ESTIMATOR, through_chain
+from services.bench.gait.events import SCORED, detected_share, judge
+from services.bench.gait.force_plates import plate_walks
+from services.bench.gait.stride_scores import together
+from services.bench.gait.strides import ESTIMATOR, through_chain
 from services.ingest.errors import SourceError
 
 

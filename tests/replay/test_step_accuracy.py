@@ -3,9 +3,9 @@
 import numpy as np
 import pytest
 
-from services.bench.accuracy_steps import step_scores
-from services.bench.kam_steps import read_steps
-from services.bench.offline_steps import quietest
+from services.bench.accuracy.kam_steps import read_steps
+from services.bench.accuracy.offline_steps import quietest
+from services.bench.accuracy.steps import step_scores
 from services.ingest.errors import MissingFile
 
 

@@ -9,7 +9,7 @@ from schemas.gait import GaitEvent, Stride
 from schemas.metrics import SessionMetrics
 from schemas.signals import STRIDE
 from schemas.vocabulary import LOWER_BODY, GaitEventKind, Side
-from services.bench.joint_walks import JOINTS, RHYTHMS, JointTrack, joint_walk
+from services.bench.gait.joint_walks import JOINTS, RHYTHMS, JointTrack, joint_walk
 from services.flow.message import Envelope, Message, Stream
 from services.metrics.node import build as build_metrics
 from services.segmentation.node import build as build_segmentation

@@ -47,6 +47,6 @@ def stride() -> Callable[..., Stride]:
 
 @pytest.fixture
 def description():
-    from services.bench.joint_walks import joint_walk
+    from services.bench.gait.joint_walks import joint_walk
 
     return joint_walk("duration=20").description

@@ -11,7 +11,7 @@ from schemas.health import Reason
 from schemas.kinematics import JointState
 from schemas.rhythm import Rhythm
 from schemas.vocabulary import LOWER_BODY, GaitEventKind, Side
-from services.bench.joint_walks import JOINTS, RHYTHMS, JointTrack, joint_walk
+from services.bench.gait.joint_walks import JOINTS, RHYTHMS, JointTrack, joint_walk
 from services.flow.message import Envelope, Message
 from services.segmentation.node import SegmentationNode, build
 

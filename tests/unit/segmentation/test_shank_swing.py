@@ -8,7 +8,7 @@ import pytest
 from schemas.gait import GaitEvent, Stride
 from schemas.kinematics import JointState
 from schemas.vocabulary import LOWER_BODY, GaitEventKind, Segment, Side
-from services.bench.joint_walks import joint_walk
+from services.bench.gait.joint_walks import joint_walk
 from services.flow.message import Message
 from services.segmentation.node import build
 from services.segmentation.parameters import SegmentationParameters

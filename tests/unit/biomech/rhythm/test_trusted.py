@@ -6,8 +6,8 @@ import numpy as np
 import pytest
 from numpy.typing import NDArray
 
-from services.bench.rhythm_motions import random_motion
-from services.bench.rhythm_scores import score_random
+from services.bench.rhythm.motions import random_motion
+from services.bench.rhythm.scores import score_random
 from services.biomech.rhythm.memory import LOCKED
 from services.biomech.rhythm.parameters import TrustedParameters
 from services.biomech.rhythm.trusted import TrustedRhythm

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from services.bench.joukov_motions import perfect_samples
+from services.bench.joukov.motions import perfect_samples
 from services.biomech.single_joint.ekf import JointSensor, SingleJointEkf, predict_sample
 
 DT_S = 0.01

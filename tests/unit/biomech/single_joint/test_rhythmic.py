@@ -3,8 +3,8 @@
 import numpy as np
 import pytest
 
-from services.bench.joukov_motions import smooth, sweep
-from services.bench.joukov_study import GRID, SWEEPING, TEN, rmse
+from services.bench.joukov.motions import smooth, sweep
+from services.bench.joukov.study import GRID, SWEEPING, TEN, rmse
 from services.biomech.rhythm.parameters import JoukovParameters, TrustedParameters
 from services.biomech.single_joint.adaptive_noise import AdaptiveNoise
 from services.biomech.single_joint.ekf import SingleJointEkf

@@ -3,9 +3,9 @@
 import numpy as np
 import pytest
 
-from services.bench.rhythm_motions import INTERVAL_S, Motion, gait_motion, random_motion
-from services.bench.rhythm_scores import FREQUENCY, LOCKED, PHASE, QUALITY, score_gait, score_random
-from services.bench.rhythm_strides import HARMONICS, StrideShapes
+from services.bench.rhythm.motions import INTERVAL_S, Motion, gait_motion, random_motion
+from services.bench.rhythm.scores import FREQUENCY, LOCKED, PHASE, QUALITY, score_gait, score_random
+from services.bench.rhythm.stride_shapes import HARMONICS, StrideShapes
 
 
 @pytest.fixture(scope="module")

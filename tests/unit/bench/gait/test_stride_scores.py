@@ -5,8 +5,8 @@ from schemas.gait import GaitEvent
 from schemas.imu import ReferenceBatch
 from schemas.session import ReferenceChannel
 from schemas.vocabulary import GaitEventKind, Side
-from services.bench.joint_walks import joint_walk
-from services.bench.stride_scores import Found, Truth, length_errors, match, together
+from services.bench.gait.joint_walks import joint_walk
+from services.bench.gait.stride_scores import Found, Truth, length_errors, match, together
 
 IC, TO = GaitEventKind.INITIAL_CONTACT, GaitEventKind.TOE_OFF
 

@@ -7,10 +7,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from schemas.vocabulary import ESTIMATORS, Side
-from services.bench.joint_scores import Score, best_score, column_of, estimate_angles, score
-from services.bench.neura_truth import reference_channels
+from services.bench.accuracy.joint_scores import Score, best_score, column_of, estimate_angles, score
+from services.bench.accuracy.neura_truth import reference_channels
+from services.bench.accuracy.vqf_hinge import is_installed, vqf_hinge_angles
 from services.bench.scoreboard import Row, Scoreboard, at_most, informative
-from services.bench.vqf_hinge import is_installed, vqf_hinge_angles
 
 Array = NDArray[np.float64]
 SIDE = Side.LEFT

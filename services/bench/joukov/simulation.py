@@ -6,8 +6,8 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.typing import NDArray
 
-from services.bench.joukov_motions import JointMotion, sweep
-from services.bench.joukov_study import (
+from services.bench.joukov.motions import JointMotion, sweep
+from services.bench.joukov.study import (
     DECADE,
     GRID,
     QUANTITIES,

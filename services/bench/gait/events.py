@@ -13,11 +13,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 from schemas.vocabulary import GaitEventKind
-from services.bench.foot_events import foot_rows
-from services.bench.force_plates import PlateWalk, manifest_of, plate_walks
+from services.bench.gait.foot_events import foot_rows
+from services.bench.gait.force_plates import PlateWalk, manifest_of, plate_walks
+from services.bench.gait.stride_scores import Matched, match, together
+from services.bench.gait.strides import ESTIMATOR, through_chain
 from services.bench.scoreboard import Row, Scoreboard, at_least, at_most, informative
-from services.bench.stride_scores import Matched, match, together
-from services.bench.strides import ESTIMATOR, through_chain
 from services.ingest.data import MANIFESTS
 from services.ingest.errors import SourceError
 

@@ -2,10 +2,10 @@ import numpy as np
 import pytest
 
 from schemas.vocabulary import GaitEventKind
-from services.bench.events import TEMPLATE, Judged, detected_share, event_rows, run
-from services.bench.foot_events import forward_rate, swing_events
-from services.bench.force_plates import PlateWalk, manifest_of, settled_edges
-from services.bench.stride_scores import match
+from services.bench.gait.events import TEMPLATE, Judged, detected_share, event_rows, run
+from services.bench.gait.foot_events import forward_rate, swing_events
+from services.bench.gait.force_plates import PlateWalk, manifest_of, settled_edges
+from services.bench.gait.stride_scores import match
 from services.ingest.manifest import load_manifest
 
 IC = GaitEventKind.INITIAL_CONTACT

@@ -5,7 +5,7 @@ from collections.abc import Sequence
 import numpy as np
 from numpy.typing import NDArray
 
-from services.bench.joukov_study import DECADE, FIRST, GRID, QUANTITIES, UNITS, Study
+from services.bench.joukov.study import DECADE, FIRST, GRID, QUANTITIES, UNITS, Study
 from services.bench.scoreboard import Row, at_most, informative
 
 FloatArray = NDArray[np.float64]

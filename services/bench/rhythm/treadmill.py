@@ -9,8 +9,8 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.signal import butter, find_peaks, sosfiltfilt
 
-from services.bench.rhythm_motions import INTERVAL_S
-from services.bench.rhythm_scores import LOCKED, PHASE, RIGHT, WRONG
+from services.bench.rhythm.motions import INTERVAL_S
+from services.bench.rhythm.scores import LOCKED, PHASE, RIGHT, WRONG
 from services.ingest.data import find_data
 
 RECORDING = "moving_reality_stroke"

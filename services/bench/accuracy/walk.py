@@ -7,11 +7,10 @@ from numpy.typing import NDArray
 
 from schemas.session import SessionDescription
 from schemas.vocabulary import ESTIMATORS, Side
-from services.bench import accuracy_knee, accuracy_steps
-from services.bench.joint_scores import SHIFTS, Score, best_score, column_of, estimate_angles, score
-from services.bench.neura_truth import NeuraTruth, collect_truth
+from services.bench.accuracy.joint_scores import SHIFTS, Score, best_score, column_of, estimate_angles, score
+from services.bench.accuracy.neura_truth import NeuraTruth, collect_truth
+from services.bench.accuracy.vqf_hinge import is_installed, vqf_hinge_angles
 from services.bench.scoreboard import Row, Scoreboard, at_most, informative
-from services.bench.vqf_hinge import is_installed, vqf_hinge_angles
 from services.biomech.lower_body_ekf import MeasurementModel, NoiseModel
 from services.estimation.node import EstimationNode
 from services.estimation.parameters import EstimationParameters, FilterParameters
@@ -106,15 +105,8 @@ def estimator_rows(name: str, angles: Array, truth: NeuraTruth, baseline: Figure
     return rows
 
 
-def run(json_path: Path | None = None, subject: str = "neura") -> Scoreboard:
-    """Score all estimators. Raises ValueError for a subject that is not known."""
-    if subject in accuracy_knee.KNEES:
-        return accuracy_knee.run(subject, json_path)
-    if subject == accuracy_steps.SUBJECT:
-        return accuracy_steps.run(json_path)
-    if subject not in RECORDINGS:
-        known = ", ".join([*RECORDINGS, *accuracy_knee.KNEES, accuracy_steps.SUBJECT])
-        raise ValueError(f"accuracy is measured on {known}, not on {subject!r}")
+def run(subject: str, json_path: Path | None = None) -> Scoreboard:
+    """Score all estimators on one of RECORDINGS."""
     spec = RECORDINGS[subject]
     truth = collect_truth(spec)
     baseline = figures(vqf_hinge_angles(spec), truth) if is_installed() else {}

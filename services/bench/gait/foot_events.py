@@ -11,8 +11,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from schemas.vocabulary import GaitEventKind, Side
+from services.bench.gait.stride_scores import Matched, match, together
 from services.bench.scoreboard import Row, informative
-from services.bench.stride_scores import Matched, match, together
 from services.ingest.data import find_data
 from services.ingest.errors import SourceError
 from services.ingest.table import CsvFormat, read_table

@@ -6,9 +6,9 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import NDArray
 
-from services.bench.joukov_curve import curve_ratio
-from services.bench.joukov_simulation import JERK_EDGES, SweepStudy, add_bins
-from services.bench.joukov_study import FIRST, GRID, QUANTITIES, UNITS, Study
+from services.bench.joukov.curve import curve_ratio
+from services.bench.joukov.simulation import JERK_EDGES, SweepStudy, add_bins
+from services.bench.joukov.study import FIRST, GRID, QUANTITIES, UNITS, Study
 from services.bench.line_chart import line_chart
 from services.bench.scoreboard import Row, Scoreboard
 

@@ -11,8 +11,8 @@ import numpy as np
 from schemas.gait import GaitEvent, Stride
 from schemas.imu import ReferenceBatch
 from schemas.vocabulary import GaitEventKind, Side
+from services.bench.gait.stride_scores import Found, Matched, Truth, length_errors, match, together
 from services.bench.scoreboard import Row, Scoreboard, at_most, informative
-from services.bench.stride_scores import Found, Matched, Truth, length_errors, match, together
 from services.cli.assembly import build_chain
 from services.ingest.errors import SourceError
 from services.ingest.source import iter_messages, open_source

@@ -5,7 +5,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from services.bench.rhythm_motions import INTERVAL_S, Motion
+from services.bench.rhythm.motions import INTERVAL_S, Motion
 
 FloatArray = NDArray[np.float64]
 BoolArray = NDArray[np.bool_]

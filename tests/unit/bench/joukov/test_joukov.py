@@ -5,10 +5,10 @@ from xml.etree import ElementTree
 import numpy as np
 import pytest
 
-from services.bench.joukov_curve import curve_rows, median_ratio, worse_percent, worst_ratio
-from services.bench.joukov_motions import knee, motion_kinds, perfect_samples, random_periodic, stumbling_knee, sweep
-from services.bench.joukov_simulation import add_bins, lag_ms, simulation_rows, study_sweep
-from services.bench.joukov_study import (
+from services.bench.joukov.curve import curve_rows, median_ratio, worse_percent, worst_ratio
+from services.bench.joukov.motions import knee, motion_kinds, perfect_samples, random_periodic, stumbling_knee, sweep
+from services.bench.joukov.simulation import add_bins, lag_ms, simulation_rows, study_sweep
+from services.bench.joukov.study import (
     DECADE,
     GRID,
     Study,
@@ -19,8 +19,8 @@ from services.bench.joukov_study import (
 )
 from services.bench.line_chart import line_chart
 from services.bench.registry import joukov
-from services.bench.rhythm_motions import INTERVAL_S
-from services.bench.rhythm_strides import HARMONICS, StrideShapes
+from services.bench.rhythm.motions import INTERVAL_S
+from services.bench.rhythm.stride_shapes import HARMONICS, StrideShapes
 from services.biomech.single_joint.rhythmic import Track
 
 DRAWN = np.random.default_rng(0).standard_normal((4, HARMONICS + 1, 2)) @ np.array([1.0, 1.0j])

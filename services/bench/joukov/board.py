@@ -12,12 +12,12 @@ from typing import Any
 
 from rich.progress import Progress
 
-from services.bench.joukov_curve import curve_rows
-from services.bench.joukov_motions import JointMotion, motion_kinds
-from services.bench.joukov_report import write_report
-from services.bench.joukov_simulation import PUBLISHED_DEG, SweepStudy, simulation_rows, study_sweep
-from services.bench.joukov_study import Study, study_motion
-from services.bench.rhythm_strides import StrideShapes, load_stride_shapes
+from services.bench.joukov.curve import curve_rows
+from services.bench.joukov.motions import JointMotion, motion_kinds
+from services.bench.joukov.report import write_report
+from services.bench.joukov.simulation import PUBLISHED_DEG, SweepStudy, simulation_rows, study_sweep
+from services.bench.joukov.study import Study, study_motion
+from services.bench.rhythm.stride_shapes import StrideShapes, load_stride_shapes
 from services.bench.scoreboard import Row, Scoreboard, informative
 from services.ingest.errors import MissingFile
 

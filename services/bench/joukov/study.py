@@ -12,8 +12,8 @@ from functools import partial
 import numpy as np
 from numpy.typing import NDArray
 
-from services.bench.joukov_motions import SENSOR, JointMotion
-from services.bench.rhythm_motions import INTERVAL_S
+from services.bench.joukov.motions import SENSOR, JointMotion
+from services.bench.rhythm.motions import INTERVAL_S
 from services.biomech.rhythm.parameters import JoukovParameters, TrustedParameters
 from services.biomech.single_joint.adaptive_noise import AdaptiveNoise
 from services.biomech.single_joint.innovation_gate import InnovationGate

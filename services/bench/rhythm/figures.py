@@ -6,7 +6,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from services.bench.rhythm_scores import RhythmScore
+from services.bench.rhythm.scores import RhythmScore
 from services.bench.scoreboard import Row, at_least, at_most, informative
 
 Figure = Callable[[list[RhythmScore]], float]

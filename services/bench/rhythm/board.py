@@ -15,7 +15,7 @@ import numpy as np
 from numpy.typing import NDArray
 from rich.progress import Progress
 
-from services.bench.rhythm_figures import (
+from services.bench.rhythm.figures import (
     ALL_RANDOM,
     METRONOME,
     PACED_GAIT,
@@ -27,10 +27,10 @@ from services.bench.rhythm_figures import (
     Pair,
     Wanted,
 )
-from services.bench.rhythm_motions import INTERVAL_S, Motion, Scenario, gait_motion, random_motion
-from services.bench.rhythm_scores import RhythmScore, score_gait, score_random
-from services.bench.rhythm_strides import StrideShapes, load_stride_shapes
-from services.bench.rhythm_treadmill import load_shank_rates, score_cadence
+from services.bench.rhythm.motions import INTERVAL_S, Motion, Scenario, gait_motion, random_motion
+from services.bench.rhythm.scores import RhythmScore, score_gait, score_random
+from services.bench.rhythm.stride_shapes import StrideShapes, load_stride_shapes
+from services.bench.rhythm.treadmill import load_shank_rates, score_cadence
 from services.bench.scoreboard import Row, Scoreboard, at_least, at_most, informative
 from services.biomech.rhythm.joukov import JoukovOscillator
 from services.biomech.rhythm.parameters import JoukovParameters

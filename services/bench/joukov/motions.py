@@ -12,8 +12,8 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.interpolate import CubicSpline
 
-from services.bench.rhythm_motions import INTERVAL_S, gait_motion, random_motion
-from services.bench.rhythm_strides import StrideShapes
+from services.bench.rhythm.motions import INTERVAL_S, gait_motion, random_motion
+from services.bench.rhythm.stride_shapes import StrideShapes
 from services.biomech.single_joint.ekf import GRAVITY, JointSensor
 
 FloatArray = NDArray[np.float64]

@@ -9,7 +9,7 @@ from typing import Literal, TypeVar
 import numpy as np
 from numpy.typing import NDArray
 
-from services.bench.rhythm_strides import StrideShapes
+from services.bench.rhythm.stride_shapes import StrideShapes
 
 FloatArray = NDArray[np.float64]
 Scenario = Literal["plain", "stop", "speed", "metro"]

@@ -7,9 +7,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from schemas.session import Anthropometry, HubDescription, Placement, SensorDescription, SessionDescription
-from services.bench.joint_scores import Score, best_score, column_of, score
-from services.bench.kam_steps import NAMES, RATE_HZ, Step, read_steps
-from services.bench.offline_steps import NOISE, both_ways, quietest
+from services.bench.accuracy.joint_scores import Score, best_score, column_of, score
+from services.bench.accuracy.kam_steps import NAMES, RATE_HZ, Step, read_steps
+from services.bench.accuracy.offline_steps import NOISE, both_ways, quietest
 from services.bench.scoreboard import Row, Scoreboard, at_most, informative
 from services.biomech.lower_body_ekf import NoiseModel
 from services.biomech.rotations import frame_from_up_and_right

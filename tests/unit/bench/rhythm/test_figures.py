@@ -3,8 +3,8 @@
 import numpy as np
 import pytest
 
-from services.bench.rhythm_figures import Pair, Wanted, cycles_to_right, harmonic_percent, right_percent, wrong_percent
-from services.bench.rhythm_scores import RhythmScore
+from services.bench.rhythm.figures import Pair, Wanted, cycles_to_right, harmonic_percent, right_percent, wrong_percent
+from services.bench.rhythm.scores import RhythmScore
 
 
 def score(right: bool = True, cycles: float = 2.0, wrong_s: float = 0.0, ratio: float = 1.0) -> RhythmScore:

@@ -1,0 +1,1 @@
+"""Joint angles of the whole estimate against optical motion capture."""

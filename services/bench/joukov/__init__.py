@@ -1,0 +1,1 @@
+"""The Rhythmic EKF against the plain one."""

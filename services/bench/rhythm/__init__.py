@@ -1,0 +1,1 @@
+"""Rhythm estimators on motions whose stride is known."""
