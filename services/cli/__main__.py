@@ -1,6 +1,7 @@
 """The ambula command."""
 
 import inspect
+from importlib.metadata import version
 from pathlib import Path
 from typing import Annotated
 
@@ -26,6 +27,21 @@ Source = Annotated[
     ),
 ]
 Estimator = Annotated[str | None, typer.Option(help="ekf, rhythmic_ekf or rhythmic_ekf_joukov; default rhythmic_ekf")]
+
+
+def _version(wanted: bool) -> None:
+    if wanted:
+        out.print(f"ambula {version('ambula')}")
+        raise typer.Exit
+
+
+@app.callback()
+def options(
+    show_version: Annotated[
+        bool, typer.Option("--version", callback=_version, is_eager=True, help="print the version and stop")
+    ] = False,
+) -> None:
+    """Options before any command."""
 
 
 @app.command()
