@@ -1,10 +1,14 @@
 """What goes wrong with sensors and radios, one small class each.
 
-Times are seconds of session time, ends excluded. Sensor faults change the samples; transport faults change which
-messages arrive, when and how often, and leave the messages themselves alone.
+Times are seconds of session time, ends excluded. Losses take samples away, value faults change them; transport faults
+change when and how often messages arrive, and leave the messages themselves alone.
 """
 
+import math
+from collections.abc import Sequence
 from dataclasses import dataclass
+
+from services.faults.bursts import BurstModel
 
 
 @dataclass(frozen=True, slots=True)
@@ -46,6 +50,23 @@ class HubGap:
 
 
 @dataclass(frozen=True, slots=True)
+class SensorLoss:
+    """A sensor's radio loses samples in bursts."""
+
+    sensor: str
+    model: BurstModel
+    seed: int
+
+
+@dataclass(frozen=True, slots=True)
+class HubLoss:
+    """The receiver misses ticks in bursts: what all its sensors said at one instant is lost together."""
+
+    model: BurstModel
+    seed: int
+
+
+@dataclass(frozen=True, slots=True)
 class ClockStep:
     """A sensor's clock jumps at one instant and stays off."""
 
@@ -68,5 +89,23 @@ class Reordered:
     window: int
 
 
-SampleFault = SensorOff | SensorStuck | Spike | HubGap | ClockStep
+LossFault = SensorOff | HubGap | SensorLoss | HubLoss
+ValueFault = SensorStuck | Spike | ClockStep
+SampleFault = LossFault | ValueFault
 TransportFault = Duplicated | Reordered
+
+
+def radio_loss(sensors: Sequence[str], share: float, seed: int) -> list[SampleFault]:
+    """Each sensor loses `share` of its samples, half of the runs on a channel that all share.
+
+    Two independent channels of share a lose 1 - (1 - a)^2 together. Losses are shared on the radio: in the recordings
+    both feet miss the same packet 5 times more often than by chance.
+    """
+    channel = BurstModel().losing(1.0 - math.sqrt(1.0 - share))
+    own = [SensorLoss(sensor, channel, _seed_of(seed, place)) for place, sensor in enumerate(sensors, start=1)]
+    return [HubLoss(channel, _seed_of(seed, 0)), *own]
+
+
+def _seed_of(seed: int, channel: int) -> int:
+    """Seeds of neighbouring channels and of neighbouring runs differ."""
+    return seed * 1009 + channel

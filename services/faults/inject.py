@@ -3,97 +3,94 @@
 from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import replace
 
-import numpy as np
-
 from schemas.imu import ImuBatch, SensorSamples
-from services.faults.faults import (
-    ClockStep,
-    Duplicated,
-    HubGap,
-    Reordered,
-    SampleFault,
-    SensorOff,
-    SensorStuck,
-    Spike,
-    TransportFault,
-)
+from schemas.signals import IMU
+from services.faults.changes import Change, SensorSample, change
+from services.faults.faults import LossFault, SampleFault
+from services.faults.losses import Loss, loss
 from services.flow.message import Message
 
-NOTHING = SensorSamples(captured_ns=[], angular_velocity=[], specific_force=[])
+Rows = list[list[SensorSample]]
+"""Samples of each sensor."""
 
 
 def inject(messages: Iterable[Message], sensors: Sequence[str], faults: Sequence[SampleFault]) -> Iterator[Message]:
-    """Damage the samples of one hub's imu stream.
+    """Damage the samples of one hub's imu stream; `Injection` also tells what was lost."""
+    return Injection(sensors, faults).apply(messages)
 
-    `sensors` are the hub's sensors in the order of the session description. Messages without samples of interest,
-    of other signals, and the end of the stream pass unchanged; a message swallowed by a HubGap leaves no hole in
-    the numbering, as when the radio was silent before anything was sent.
+
+class Injection:
+    """Faults at work on one hub's imu stream, one after another in the order given, and what they took away.
+
+    `sensors` are the hub's sensors in the order of the session description. Every sample is judged by its own time,
+    so it makes no difference how samples are batched into messages.
     """
-    held: dict[str, SensorSamples] = {}
-    swallowed = 0
-    for message in messages:
-        batch = message.payload
-        sequence = message.envelope.sequence - swallowed
-        if not isinstance(batch, ImuBatch):
-            yield replace(message, envelope=replace(message.envelope, sequence=sequence)) if swallowed else message
-            continue
-        time_s = message.envelope.captured_ns * 1e-9
-        if any(isinstance(fault, HubGap) and fault.from_s <= time_s < fault.to_s for fault in faults):
-            swallowed += 1
-            continue
-        damaged = [
-            _damage(samples, sensor, time_s, faults, held)
-            for sensor, samples in zip(sensors, batch.sensors, strict=True)
+
+    def __init__(self, sensors: Sequence[str], faults: Sequence[SampleFault]) -> None:
+        self.sensors = list(sensors)
+        self.sent = dict.fromkeys(self.sensors, 0)
+        """Samples that each sensor had."""
+        self.lost: dict[str, list[int]] = {sensor: [] for sensor in self.sensors}
+        """Times of the samples of each sensor that were taken away, ns. All others were delivered."""
+        self._losses_and_changes = [
+            (loss(fault), None) if isinstance(fault, LossFault) else (None, change(fault)) for fault in faults
         ]
-        envelope = replace(message.envelope, sequence=sequence)
-        yield Message(message.stream, envelope, ImuBatch(sensors=damaged))
 
+    def apply(self, messages: Iterable[Message]) -> Iterator[Message]:
+        """The damaged stream. Messages of other signals pass unchanged.
 
-def _damage(
-    samples: SensorSamples, sensor: str, time_s: float, faults: Sequence[SampleFault], held: dict[str, SensorSamples]
-) -> SensorSamples:
-    for fault in faults:
-        match fault:
-            case SensorOff(name, from_s, to_s) if name == sensor and from_s <= time_s < to_s:
-                samples = NOTHING
-            case SensorStuck(name, from_s, to_s) if name == sensor and from_s <= time_s < to_s and sensor in held:
-                samples = held[sensor].model_copy(update={"captured_ns": samples.captured_ns})
-            case Spike(name, at_s) if name == sensor and at_s <= time_s < at_s + 0.0099:
-                samples = samples.model_copy(
-                    update={
-                        "angular_velocity": _raised(samples.angular_velocity, fault.angular_velocity),
-                        "specific_force": _raised(samples.specific_force, fault.specific_force),
-                    }
-                )
-            case ClockStep(name, at_s, by_s) if name == sensor and time_s >= at_s:
-                moved = [captured_ns + int(by_s * 1e9) for captured_ns in samples.captured_ns]
-                samples = samples.model_copy(update={"captured_ns": moved})
-            case _:
+        A message without a sample left is not sent, and the numbering goes on without a hole, as when the radio
+        was silent before anything was sent.
+        """
+        swallowed = 0
+        for message in messages:
+            payload = message.payload
+            if message.stream.signal is not IMU:
+                yield message
                 continue
-    if samples.captured_ns:
-        held[sensor] = samples
-    return samples
+            if isinstance(payload, ImuBatch):
+                payload = self._damage(payload)
+                if not any(samples.captured_ns for samples in payload.sensors):
+                    swallowed += 1
+                    continue
+            envelope = replace(message.envelope, sequence=message.envelope.sequence - swallowed)
+            yield Message(message.stream, envelope, payload)
+
+    def _damage(self, batch: ImuBatch) -> ImuBatch:
+        rows = [_rows(samples) for samples in batch.sensors]
+        for sensor, samples in zip(self.sensors, rows, strict=True):
+            self.sent[sensor] += len(samples)
+        for takes, changes in self._losses_and_changes:
+            if takes is not None:
+                rows = self._take(rows, takes)
+            if changes is not None:
+                rows = self._change(rows, changes)
+        return ImuBatch(sensors=[_samples(samples) for samples in rows])
+
+    def _take(self, rows: Rows, takes: Loss) -> Rows:
+        left: Rows = [[] for _ in rows]
+        in_time = sorted((sample.captured_ns, s, i) for s, row in enumerate(rows) for i, sample in enumerate(row))
+        for captured_ns, s, i in in_time:
+            if takes(self.sensors[s], captured_ns):
+                self.lost[self.sensors[s]].append(captured_ns)
+            else:
+                left[s].append(rows[s][i])
+        return left
+
+    def _change(self, rows: Rows, changes: Change) -> Rows:
+        return [
+            [changes(sensor, sample) for sample in samples] for sensor, samples in zip(self.sensors, rows, strict=True)
+        ]
 
 
-def _raised(rows: list[list[float]], by: float) -> list[list[float]]:
-    return [[value + by for value in row] for row in rows]
+def _rows(samples: SensorSamples) -> list[SensorSample]:
+    columns = (samples.captured_ns, samples.angular_velocity, samples.specific_force)
+    return [SensorSample(*parts) for parts in zip(*columns, strict=True)]
 
 
-def disturb(messages: Sequence[Message], faults: Sequence[TransportFault], seed: int) -> list[Message]:
-    """The order in which a bad network delivers messages; envelopes and payloads stay as they are."""
-    random = np.random.default_rng(seed)
-    delivered = list(messages)
-    for fault in faults:
-        match fault:
-            case Duplicated(share):
-                again = [
-                    (place + int(random.integers(1, 20)), message)
-                    for place, message in enumerate(delivered)
-                    if random.random() < share
-                ]
-                placed = [*enumerate(delivered), *again]
-                delivered = [message for _, message in sorted(placed, key=lambda pair: pair[0])]
-            case Reordered(window):
-                places = np.arange(len(delivered)) + random.uniform(0, window, len(delivered))
-                delivered = [delivered[i] for i in np.argsort(places, kind="stable")]
-    return delivered
+def _samples(rows: list[SensorSample]) -> SensorSamples:
+    return SensorSamples(
+        captured_ns=[row.captured_ns for row in rows],
+        angular_velocity=[row.angular_velocity for row in rows],
+        specific_force=[row.specific_force for row in rows],
+    )

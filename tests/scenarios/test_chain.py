@@ -11,8 +11,9 @@ from schemas.kinematics import Calibration, JointState, LivePose
 from schemas.metrics import SessionMetrics
 from schemas.vocabulary import LOWER_BODY, SensorState
 from services.cli.assembly import build_chain
+from services.faults.disturb import disturb
 from services.faults.faults import Duplicated, HubGap, Reordered, SensorOff, SensorStuck, Spike
-from services.faults.inject import disturb, inject
+from services.faults.inject import inject
 from services.flow.inbox import OrderedInbox
 from services.flow.message import Message, encode_payload
 from services.ingest.source import iter_messages, open_source
