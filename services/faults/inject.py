@@ -30,7 +30,7 @@ class Injection:
         self.sensors = list(sensors)
         self.sent = dict.fromkeys(self.sensors, 0)
         """Samples that each sensor had."""
-        self.lost: dict[str, list[int]] = {sensor: [] for sensor in self.sensors}
+        self.lost: dict[str, set[int]] = {sensor: set() for sensor in self.sensors}
         """Times of the samples of each sensor that were taken away, ns. All others were delivered."""
         self._losses_and_changes = [
             (loss(fault), None) if isinstance(fault, LossFault) else (None, change(fault)) for fault in faults
@@ -72,7 +72,7 @@ class Injection:
         in_time = sorted((sample.captured_ns, s, i) for s, row in enumerate(rows) for i, sample in enumerate(row))
         for captured_ns, s, i in in_time:
             if takes(self.sensors[s], captured_ns):
-                self.lost[self.sensors[s]].append(captured_ns)
+                self.lost[self.sensors[s]].add(captured_ns)
             else:
                 left[s].append(rows[s][i])
         return left
