@@ -50,6 +50,11 @@ class Anthropometry(Payload):
     source: Literal["measured", "regression", "default"]
 
 
+WalkPath = Literal["turning", "straight"]
+"""Whether the person may turn. `turning`: thighs keep their heading against the pelvis, the body goes where it will.
+`straight`: pelvis and thighs keep the heading in which the person stood: on a treadmill, in place, along a corridor."""
+
+
 class StandingInterval(Payload):
     """A span that the operator marked as quiet standing."""
 
@@ -73,6 +78,7 @@ class SessionDescription(Payload):
     origin: Literal["recording", "archive", "synthetic", "device"]
     protocol: str
     estimator: str = Field(description="a name of vocabulary.ESTIMATORS")
+    walk_path: WalkPath = Field(description="turning: anywhere; straight: treadmill, in place, corridor without a turn")
     hubs: list[HubDescription]
     anthropometry: Anthropometry
     standing: list[StandingInterval]

@@ -100,5 +100,6 @@ ESTIMATORS: dict[str, str] = {
     "ekf": "EKF on joint position, velocity and acceleration",
     "rhythmic_ekf": "the same with the jerk of a rhythm model that knows whether it is locked",
     "rhythmic_ekf_joukov": "the same with the canonical dynamical system as printed (Joukov eq. 15-21)",
+    "joukov_published": "as published throughout: that system, and the measurement model as printed (Joukov eq. 10-22)",
 }
-"""Selectable estimators, by name."""
+"""Selectable estimators, by name: from the plain filter up to ours, then back to the published one part by part."""

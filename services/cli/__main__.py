@@ -10,6 +10,7 @@ from rich.progress import BarColumn, Progress, TextColumn
 from rich.table import Table
 
 from schemas.metrics import SessionMetrics
+from schemas.session import WalkPath
 from services.cli.console import err, out, told
 
 app = typer.Typer(
@@ -26,7 +27,18 @@ Source = Annotated[
         " (neura_s02_walk), or synthetic:walk?speed=1.1&seed=3",
     ),
 ]
-Estimator = Annotated[str | None, typer.Option(help="ekf, rhythmic_ekf or rhythmic_ekf_joukov; default rhythmic_ekf")]
+Estimator = Annotated[
+    str | None,
+    typer.Option(help="ekf, rhythmic_ekf, rhythmic_ekf_joukov or joukov_published; default rhythmic_ekf"),
+]
+Straight = Annotated[
+    bool | None,
+    typer.Option(
+        "--straight/--turning",
+        help="straight: treadmill, in place, corridor without a turn; default: as the recording says, else turning",
+        show_default=False,
+    ),
+]
 
 
 def _version(wanted: bool) -> None:
@@ -60,6 +72,7 @@ def replay(
     path: Source,
     speed: Annotated[str, typer.Option(help="1 = as recorded, 10 = ten times as fast, max = as fast as it goes")] = "1",
     estimator: Estimator = None,
+    straight: Straight = None,
 ) -> None:
     """Play a recording through the running services, as if the sensors were worn now."""
     from services.bus.connection import Bus, BusUnavailable
@@ -72,7 +85,7 @@ def replay(
         live.Watch(bus) as watch,
     ):
         pace = None if speed == "max" else _positive(speed)
-        description = live.start_session(bus, _absolute(path), pace, estimator)
+        description = live.start_session(bus, _absolute(path), pace, estimator, _walk_path(straight))
         err.print(f"session {description.session}: {description.title}")
         with Progress(
             TextColumn("{task.description}"), BarColumn(), TextColumn("{task.fields[at]}"), console=err
@@ -90,13 +103,14 @@ def run(
     path: Source,
     folder: Annotated[Path, typer.Option("--out", help="folder for the results; made when it is missing")],
     estimator: Estimator = None,
+    straight: Straight = None,
 ) -> None:
     """Run a recording through the same nodes in a plain loop and write CSV and JSON files."""
     from services.cli.run import run as run_source
     from services.ingest.errors import SourceError
 
     with told(SourceError, OSError):
-        run_source(path, estimator, folder, err)
+        run_source(path, estimator, folder, err, _walk_path(straight))
     out.print(f"written: {folder}/joint_angles.csv, events.csv, strides.csv, metrics.json")
 
 
@@ -104,13 +118,14 @@ def run(
 def synth(
     folder: Annotated[Path, typer.Option("--out", help="folder for the recording; made when it is missing")],
     walk: Annotated[str, typer.Option(help="as in a source name, e.g. speed=1.3&asymmetry=0.2&seed=7")] = "",
+    straight: Straight = None,
 ) -> None:
     """Write a synthetic walk with its truth as a recording folder that replays like any other."""
     from services.ingest.errors import SourceError
     from services.ingest.synthetic import write_recording
 
     with told(SourceError, OSError):
-        write_recording(folder, walk)
+        write_recording(folder, walk, _walk_path(straight) or "turning")
     out.print(f"written: {folder}/recording.toml and its CSV files; try: ambula run {folder} --out out")
 
 
@@ -165,6 +180,10 @@ def _positive(text: str) -> float:
     if speed <= 0:
         raise ValueError(f"--speed must be more than 0, not {text}")
     return speed
+
+
+def _walk_path(straight: bool | None) -> WalkPath | None:
+    return None if straight is None else "straight" if straight else "turning"
 
 
 def _absolute(path: str) -> str:

@@ -11,6 +11,7 @@ from rich.progress import BarColumn, Progress, TextColumn, TimeRemainingColumn
 from schemas.gait import GaitEvent, Stride
 from schemas.kinematics import JointState
 from schemas.metrics import SessionMetrics
+from schemas.session import WalkPath
 from schemas.vocabulary import BODY_MODELS
 from services.cli import tables
 from services.cli.assembly import build_chain
@@ -52,9 +53,11 @@ class RunFiles:
         (self.folder / "metrics.json").write_text(json.dumps(header | body, indent=2) + "\n", encoding="utf-8")
 
 
-def run(spec: str, estimator: str | None, folder: Path, console: Console) -> dict[str, Any]:
+def run(
+    spec: str, estimator: str | None, folder: Path, console: Console, walk_path: WalkPath | None = None
+) -> dict[str, Any]:
     """Run a source to its end; the header of metrics.json. Raises SourceError for a source that cannot be read."""
-    source = open_source(spec, estimator=estimator)
+    source = open_source(spec, estimator=estimator, walk_path=walk_path)
     description = source.describe()
     chain = build_chain(description)
     files = RunFiles(folder)
@@ -81,6 +84,7 @@ def _header(source: Source, chain: Chain) -> dict[str, Any]:
         "session": description.session,
         "title": description.title,
         "estimator": description.estimator,
+        "walk_path": description.walk_path,
         "definitions": tables.STRIDE_DEFINITION,
         "rejections": [rejection.model_dump(mode="json") for rejection in rejections],
     }

@@ -231,7 +231,7 @@ def _driver_of(
         return None, []
     if estimator == "rhythmic_ekf":
         return rhythm, [model.names.index(name) for name in RHYTHM_CHANNELS]
-    if estimator == "rhythmic_ekf_joukov":
+    if estimator in ("rhythmic_ekf_joukov", "joukov_published"):
         from services.biomech.rhythm.joukov import JoukovOscillator
 
         # The right knee comes first: its error drives the phase; every joint has its own harmonics.

@@ -103,7 +103,8 @@ class EstimationNode:
         return outputs
 
     def _new_filter(self, calibrated: Calibrated) -> LowerBodyFilter:
-        return LowerBodyFilter(self._description, self._intake.sensors, calibrated, self._parameters.filter)
+        parameters = self._parameters.filter_of(self._description)
+        return LowerBodyFilter(self._description, self._intake.sensors, calibrated, parameters)
 
     def _describe(self, calibrated: Calibrated) -> Calibration:
         alignment = calibrated.alignment

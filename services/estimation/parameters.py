@@ -1,7 +1,8 @@
 """Every tunable of the estimation service."""
 
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 
+from schemas.session import SessionDescription
 from services.biomech.lower_body_ekf import MeasurementModel, NoiseModel
 
 
@@ -93,6 +94,17 @@ class FilterParameters:
     longest_jerk: float = 2000.0  # rad/s^3, bound on what a rhythm may feed; knee jerk in walking stays below 1500
 
 
+PUBLISHED = FilterParameters(
+    measurement=MeasurementModel(gyro_sees_position=True, accel_sees_motion=True),
+    noise=NoiseModel(accel_std=1.0, yaw_std=0.1),
+    soft_knees=False,
+    sample_delay=0.0,
+)
+"""The measurement model as published (Joukov eq. 10-14, 22): full Jacobian, dynamic accelerometer, hinge knees, yaw
+known to 0.1 rad, samples that mean the instant of their time stamp. `walk_path` straight is eq. 22, turning the variant
+that the paper names beside it. Why ours differs is said at each option."""
+
+
 @dataclass(frozen=True)
 class EstimationParameters:
     """All of them."""
@@ -108,3 +120,10 @@ class EstimationParameters:
         2.0  # s of standing at the start of the estimates: the filter settles in it; 0.5 costs 0.1
     )
     live_rate_hz: float = 25.0  # Hz of data time
+
+    def filter_of(self, description: SessionDescription) -> FilterParameters:
+        """The filter of a session: `filter`, or the published one by name, and yaw as the walk's path asks for."""
+        chosen = PUBLISHED if description.estimator == "joukov_published" else self.filter
+        if description.walk_path == "turning":
+            return chosen
+        return replace(chosen, measurement=replace(chosen.measurement, yaw="world"))

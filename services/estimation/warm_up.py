@@ -8,7 +8,7 @@ from services.biomech.forward_kinematics import segment_poses
 from services.biomech.lower_body import SEGMENTS
 from services.estimation.alignment import Alignment
 from services.estimation.lower_body_filter import Calibrated, LowerBodyFilter
-from services.estimation.parameters import FilterParameters
+from services.estimation.parameters import EstimationParameters
 from services.estimation.samples import Tick
 
 
@@ -26,7 +26,8 @@ def warm_up() -> None:
     calibrated = Calibrated(Alignment(frames, np.ones(len(sensors)), everyone), np.zeros((len(sensors), 3)))
     upright = np.tile([0.0, 0.0, 0.0, 0.0, 9.81, 0.0], (len(sensors), 1))
     for estimator in ESTIMATORS:
-        running = LowerBodyFilter(_session(estimator, sensors), sensors, calibrated, FilterParameters())
+        session = _session(estimator, sensors)
+        running = LowerBodyFilter(session, sensors, calibrated, EstimationParameters().filter_of(session))
         for captured_ns in (0, 10_000_000):
             running.fuse(Tick(captured_ns, upright, everyone))
         segment_poses(running.model, running.ekf.x[0])
@@ -38,6 +39,6 @@ def _session(estimator: str, sensors: list[SensorDescription]) -> SessionDescrip
     )
     return SessionDescription(
         session="warm-up", title="", started_unix_ns=0, origin="synthetic", protocol="", estimator=estimator,
-        hubs=[HubDescription(name="none", sensors=sensors)], anthropometry=body, standing=[], reference=[],
-        duration_s=None,
+        walk_path="turning", hubs=[HubDescription(name="none", sensors=sensors)], anthropometry=body, standing=[],
+        reference=[], duration_s=None,
     )  # fmt: skip

@@ -27,6 +27,7 @@ class BusControl:
             "source": request.source,
             "speed": request.speed,
             "estimator": request.estimator,
+            "walk_path": request.walk_path,
         }
         try:
             return SessionDescription.model_validate(self._order("start", order, START_TIMEOUT_S))

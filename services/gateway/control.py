@@ -3,7 +3,7 @@
 from dataclasses import dataclass
 from typing import Literal, Protocol
 
-from schemas.session import SessionDescription
+from schemas.session import SessionDescription, WalkPath
 
 
 class ControlUnavailable(RuntimeError):
@@ -16,12 +16,16 @@ class ControlRefused(RuntimeError):
 
 @dataclass(frozen=True, slots=True)
 class StartRequest:
-    """A session to be started. `speed` None plays as fast as the services follow; `estimator` None is the default."""
+    """A session to be started. `speed` None plays as fast as the services follow.
+
+    `estimator` and `walk_path` None are what the source says.
+    """
 
     session: str
     source: str
     speed: float | None
     estimator: str | None
+    walk_path: WalkPath | None
 
 
 @dataclass(frozen=True, slots=True)

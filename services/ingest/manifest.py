@@ -7,7 +7,7 @@ from typing import Annotated, Literal
 
 from pydantic import BaseModel, ConfigDict, Field, ValidationError
 
-from schemas.session import Anthropometry, Placement
+from schemas.session import Anthropometry, Placement, WalkPath
 from schemas.vocabulary import ESTIMATORS, Segment
 from services.ingest.axes import Axes, rotation_from_axes
 from services.ingest.errors import InvalidManifest, MissingFile, UnknownSegment, UnreadableFile
@@ -146,6 +146,7 @@ class Manifest(Entry):
     title: str
     protocol: str = ""
     estimator: str = "rhythmic_ekf"
+    walk_path: WalkPath = "turning"
     data: str = "."
     started: datetime | None = None
     rate_hz: Rate

@@ -100,6 +100,7 @@ class McapRecording:
             "session": self._identity.session,
             "origin": "archive",
             "estimator": self._identity.estimator or self._recorded.estimator,
+            "walk_path": self._identity.walk_path or self._recorded.walk_path,
         }
         return self._recorded.model_copy(update=changed)
 

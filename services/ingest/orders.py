@@ -5,6 +5,7 @@ from typing import Annotated, TypeVar
 
 from pydantic import BaseModel, ConfigDict, Field, ValidationError
 
+from schemas.session import WalkPath
 from services.ingest.errors import SourceError
 
 
@@ -24,6 +25,7 @@ class StartOrder(Order):
     source: Annotated[str, Field(min_length=1, max_length=4096)]
     speed: Annotated[float, Field(gt=0, le=1000)] | None = Field(description="times real time; null: as followed")
     estimator: str | None = None
+    walk_path: WalkPath | None = None
     session: str | None = None
     ticks: Annotated[int, Field(ge=1, le=5)] = 1
 

@@ -62,6 +62,7 @@ class Recording:
             origin="recording",
             protocol=manifest.protocol,
             estimator=identity.estimator or manifest.estimator,
+            walk_path=identity.walk_path or manifest.walk_path,
             hubs=[
                 HubDescription(name=hub.name, sensors=[_described(manifest, sensor) for sensor in hub.sensor])
                 for hub in manifest.hub

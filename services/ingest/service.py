@@ -114,7 +114,7 @@ class IngestService:
         order = parse_order(StartOrder, body)
         if order.session in self._descriptions:
             raise InvalidOrder(f"session {order.session} runs already; stop it or choose another id")
-        source = open_source(order.source, session=order.session, estimator=order.estimator)
+        source = open_source(order.source, session=order.session, estimator=order.estimator, walk_path=order.walk_path)
         description = source.describe()
         with self._lock:
             if description.session in self._descriptions:

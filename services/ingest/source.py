@@ -4,6 +4,7 @@ from collections.abc import Iterator
 from pathlib import Path
 
 from schemas.archive_layout import PART_SUFFIX
+from schemas.session import WalkPath
 from services.flow.message import Envelope, Message
 from services.ingest.batching import Batcher
 from services.ingest.data import MANIFESTS, data_folders
@@ -28,14 +29,16 @@ def known_recordings() -> dict[str, Path]:
     return found
 
 
-def open_source(spec: str, *, session: str | None = None, estimator: str | None = None) -> Source:
+def open_source(
+    spec: str, *, session: str | None = None, estimator: str | None = None, walk_path: WalkPath | None = None
+) -> Source:
     """Open a recording folder, a manifest, an .mcap file or an archived session's folder, a known recording's name,
-    or `synthetic:walk?speed=1.1`.
+    `synthetic:walk?speed=1.1` or `synthetic:march?metronome=70`.
 
-    `session` None takes a random id, `estimator` None leaves the choice to the source.
+    `session` None takes a random id, `estimator` and `walk_path` None leave the choice to the source.
     Raises SourceError, saying what is wrong where and what to do.
     """
-    identity = Identity.new(session, estimator)
+    identity = Identity.new(session, estimator, walk_path)
     scheme, separator, rest = spec.partition(":")
     if separator and scheme == "synthetic":
         return open_synthetic(rest, identity)
@@ -51,8 +54,8 @@ def open_source(spec: str, *, session: str | None = None, estimator: str | None 
         archived = [] if (path / FILE_NAME).exists() else raw_files(path)
         return McapRecording(archived, identity) if archived else Recording(path / FILE_NAME, identity)
     raise UnknownSource(
-        f"{spec[:200]!r} is no folder with {FILE_NAME}, no .mcap file, no synthetic:walk and no known recording "
-        f"({', '.join(named)})"
+        f"{spec[:200]!r} is no folder with {FILE_NAME}, no .mcap file, neither synthetic:walk nor synthetic:march, and no "
+        f"known recording ({', '.join(named)})"
     )
 
 

@@ -43,8 +43,8 @@ def describe(session: str) -> SessionDescription:
         height_m=None, mass_kg=None, thigh_length_m=0.4, shank_length_m=0.4, hip_width_m=0.2, source="default"
     )
     return SessionDescription(
-        session=session, title="", started_unix_ns=0, origin="synthetic", protocol="", estimator="ekf", hubs=[],
-        anthropometry=body, standing=[], reference=[], duration_s=None,
+        session=session, title="", started_unix_ns=0, origin="synthetic", protocol="", estimator="ekf",
+        walk_path="turning", hubs=[], anthropometry=body, standing=[], reference=[], duration_s=None,
     )  # fmt: skip
 
 

@@ -138,6 +138,7 @@ def describe(session):
         origin="synthetic",
         protocol="walk",
         estimator="ekf",
+        walk_path="turning",
         hubs=[HubDescription(name="hub", sensors=[])],
         anthropometry=Anthropometry(
             height_m=1.7, mass_kg=70.0, thigh_length_m=0.4, shank_length_m=0.4, hip_width_m=0.2, source="default"

@@ -23,7 +23,7 @@ from tests.unit.gateway.walk import contact_at, describe, metrics_at, pose_at, s
 
 pytestmark = pytest.mark.system
 
-ORDER = StartRequest("a", "synthetic:walk", 1.0, None)
+ORDER = StartRequest("a", "synthetic:walk", 1.0, None, None)
 
 
 class Listening:
@@ -143,7 +143,7 @@ def test_orders_reach_the_ingest_and_refusals_come_back(settings, closing, tmp_p
     with pytest.raises(ControlRefused, match="does not run here"):
         control.stop("b")
     start = dict(orders)["start"]
-    assert start == {"session": "a", "source": "synthetic:walk", "speed": 1.0, "estimator": None}
+    assert start == {"session": "a", "source": "synthetic:walk", "speed": 1.0, "estimator": None, "walk_path": None}
 
 
 def test_before_there_is_a_router_orders_say_so(tmp_path):

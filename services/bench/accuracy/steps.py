@@ -53,8 +53,8 @@ def describe() -> SessionDescription:
     )
     return SessionDescription(
         session="kam", title="Single treadmill steps", started_unix_ns=0, origin="recording", protocol="walking",
-        estimator="ekf", hubs=[HubDescription(name="imu", sensors=sensors)], anthropometry=body, standing=[],
-        reference=[], duration_s=None,
+        estimator="ekf", walk_path="turning", hubs=[HubDescription(name="imu", sensors=sensors)], anthropometry=body,
+        standing=[], reference=[], duration_s=None,
     )  # fmt: skip
 
 

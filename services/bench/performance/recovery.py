@@ -179,6 +179,7 @@ def describe(session: str) -> SessionDescription:
         origin="synthetic",
         protocol="walk",
         estimator="ekf",
+        walk_path="turning",
         hubs=[HubDescription(name="hub", sensors=[])],
         anthropometry=body,
         standing=[],

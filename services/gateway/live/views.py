@@ -32,6 +32,7 @@ def session_view(description: SessionDescription, patient: str | None) -> View:
         "origin": description.origin,
         "protocol": description.protocol,
         "estimator": description.estimator,
+        "walk_path": description.walk_path,
         "started_unix_s": round(description.started_unix_ns / 1e9, 3),
         "duration_s": description.duration_s,
         "sensors": [

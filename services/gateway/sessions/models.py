@@ -7,6 +7,7 @@ from typing import Annotated, Literal
 from pydantic import AfterValidator, BaseModel, ConfigDict, Field
 
 from schemas.gait import CURVE_POINTS
+from schemas.session import WalkPath
 from schemas.vocabulary import ESTIMATORS
 
 Code = Annotated[str, Field(pattern="^[0-9A-Z]{1,16}$", description="patient code", examples=["K7QM3F"])]
@@ -47,6 +48,12 @@ class SessionIn(BaseModel):
         default=1.0, gt=0, le=100, description="times real time; null for as fast as possible", examples=[1.0]
     )
     estimator: EstimatorName | None = Field(default=None, description="null for the default", examples=["rhythmic_ekf"])
+    walk_path: WalkPath | None = Field(
+        default=None,
+        description="straight: treadmill, in place, or a corridor without a turn; turning: anywhere; null for what"
+        " the source says, else turning",
+        examples=["turning"],
+    )
     patient: Code | None = Field(default=None, description="patient code; null to link it later")
 
 

@@ -40,7 +40,9 @@ def start_session(body: SessionIn, gateway: Context) -> SessionOut:
         if body.patient is not None:
             get_patient(database, body.patient)
         records.add_requested(database, session, body)
-    description = _ask_for_start(gateway, StartRequest(session, body.source, body.speed, body.estimator))
+    description = _ask_for_start(
+        gateway, StartRequest(session, body.source, body.speed, body.estimator, body.walk_path)
+    )
     with gateway.database.transaction() as database:
         row = records.record_start(database, description)
         database.flush()

@@ -6,7 +6,7 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import NDArray
 
-from schemas.session import SensorDescription, SessionDescription
+from schemas.session import SensorDescription, SessionDescription, WalkPath
 from services.ingest.manifest import FILE_NAME
 from services.ingest.synthetic.parameters import WalkParameters
 from services.ingest.synthetic.walk import Block, SyntheticWalk
@@ -15,12 +15,15 @@ TRUTH_FILE = "truth.csv"
 _IMU_HEADER = ["time_s", "gyr_x", "gyr_y", "gyr_z", "acc_x", "acc_y", "acc_z"]
 
 
-def write_recording(folder: Path, walk: str = "") -> None:
-    """Write the walk of `speed=1.1&seed=3` to a folder, which is made. Raises SourceError for an unknown option."""
+def write_recording(folder: Path, walk: str = "", walk_path: WalkPath = "turning") -> None:
+    """Write the walk of `speed=1.1&seed=3` to a folder, which is made. Raises SourceError for an unknown option.
+
+    `walk_path` is what the recording asks of an estimator; it does not make the walk straight.
+    """
     source = SyntheticWalk(WalkParameters.parse(walk))
     folder.mkdir(parents=True, exist_ok=True)
     blocks = list(source.samples())
-    description = source.description()
+    description = source.description().model_copy(update={"walk_path": walk_path})
     for index, sensor in enumerate(description.hubs[0].sensors):
         _write(folder / f"imu_{sensor.name}.csv", _IMU_HEADER, [_imu_rows(block, index) for block in blocks])
     if description.reference:
@@ -52,6 +55,7 @@ def _manifest(description: SessionDescription, walk: str) -> str:
         f'# Written by `ambula synth --walk "{walk}"`; the truth beside it is exact.',
         f'title = "{description.title}"',
         f'protocol = "{description.protocol}"',
+        f'walk_path = "{description.walk_path}"',
         f"rate_hz = {description.hubs[0].sensors[0].rate_hz}",
         "",
         "[time]",

@@ -23,9 +23,14 @@ class WalkSource:
         self._identity = identity
 
     def describe(self) -> SessionDescription:
-        """The session, with the estimator that the operator chose."""
+        """The session, with what the operator chose."""
         description = self._walk.description(self._identity.session, self._identity.started_unix_ns)
-        return description.model_copy(update={"estimator": self._identity.estimator or description.estimator})
+        return description.model_copy(
+            update={
+                "estimator": self._identity.estimator or description.estimator,
+                "walk_path": self._identity.walk_path or description.walk_path,
+            }
+        )
 
     def messages(self) -> Iterator[SourceMessage]:
         """One message per tick, truth beside it."""

@@ -74,6 +74,7 @@ class SyntheticWalk:
             origin="synthetic",
             protocol="quiet standing, then walking",
             estimator="rhythmic_ekf",
+            walk_path="turning",
             hubs=[HubDescription(name=HUB, sensors=[mount.description for mount in self.mounts])],
             anthropometry=Anthropometry(
                 height_m=None,

@@ -31,6 +31,7 @@ def description():
         origin="synthetic",
         protocol="walk",
         estimator="ekf",
+        walk_path="turning",
         hubs=[
             HubDescription(
                 name="hub",

@@ -16,6 +16,7 @@ from schemas.session import (
     SensorDescription,
     SessionDescription,
     StandingInterval,
+    WalkPath,
 )
 from schemas.signals import IMU
 from schemas.vocabulary import LOWER_BODY, Segment
@@ -52,6 +53,7 @@ def describe(
     *,
     hubs: Sequence[Sequence[Segment]] = (SEGMENTS,),
     estimator: str = "ekf",
+    walk_path: WalkPath = "turning",
     standing: Sequence[StandingInterval] = (),
     placements: dict[Segment, Placement] | None = None,
 ) -> SessionDescription:
@@ -65,6 +67,7 @@ def describe(
 
     return SessionDescription(
         session="s", title="test", started_unix_ns=0, origin="synthetic", protocol="stand, walk", estimator=estimator,
+        walk_path=walk_path,
         hubs=[HubDescription(name=f"hub{i}", sensors=[sensor(s) for s in names]) for i, names in enumerate(hubs)],
         anthropometry=BODY, standing=list(standing), reference=[], duration_s=None,
     )  # fmt: skip

@@ -31,6 +31,7 @@ def describe(session: str, title: str = "Walk", **changes) -> SessionDescription
         "origin": "synthetic",
         "protocol": "walk",
         "estimator": "rhythmic_ekf",
+        "walk_path": "turning",
         "hubs": [HubDescription(name="hub", sensors=sensors)],
         "anthropometry": Anthropometry(
             height_m=1.75, mass_kg=70.0, thigh_length_m=THIGH_M, shank_length_m=SHANK_M, hip_width_m=HIPS_M,

@@ -8,6 +8,11 @@ const SPEEDS = [
   ["5", "Five times as fast"],
   ["max", "As fast as possible"],
 ];
+const PATHS = [
+  ["", "As the source says (turns allowed)"],
+  ["turning", "Free, with turns"],
+  ["straight", "Straight: treadmill, in place, corridor"],
+];
 const KINDS = { recording: "Recorded walks", synthetic: "Simulated walkers" };
 
 export class StartDialog {
@@ -16,6 +21,7 @@ export class StartDialog {
     this.source = el("select", { id: "source", required: true });
     this.speed = el("select", { id: "speed" }, ...SPEEDS.map(([value, name]) => el("option", { value }, name)));
     this.estimator = el("select", { id: "estimator" });
+    this.path = el("select", { id: "walk-path" }, ...PATHS.map(([value, name]) => el("option", { value }, name)));
     this.patient = el("select", { id: "patient" });
     this.problem = el("p", { class: "banner", role: "alert", hidden: true });
     this.go = el("button", { class: "primary", type: "submit" }, "Start");
@@ -26,6 +32,7 @@ export class StartDialog {
       field("Source", this.source),
       field("Speed", this.speed),
       field("Estimator", this.estimator),
+      field("Path", this.path),
       field("Patient", this.patient),
       this.problem,
       el(
@@ -87,6 +94,7 @@ export class StartDialog {
         source: this.source.value,
         speed: this.speed.value === "max" ? null : Number(this.speed.value),
         estimator: this.estimator.value || null,
+        walk_path: this.path.value || null,
         patient: this.patient.value || null,
       });
       this.node.close();
