@@ -7,6 +7,7 @@ height and speed of the pelvis in double support; they are not a recording of an
 """
 
 import math
+from collections.abc import Mapping
 from dataclasses import dataclass
 
 import numpy as np
@@ -57,9 +58,13 @@ class FourierCurve:
         second = -(cos @ (k**2 * self.cosine) + sin @ (k**2 * self.sine))
         return value, first, second
 
+    def scaled(self, factor: float) -> "FourierCurve":
+        """Times a constant."""
+        return FourierCurve(factor * self.mean, factor * self.cosine, factor * self.sine)
 
-def _series(knots: list[tuple[float, float]]) -> FourierCurve:
-    """A periodic spline through the knots, cut to the first harmonics."""
+
+def series_through(knots: list[tuple[float, float]]) -> FourierCurve:
+    """A periodic spline through the knots (per cent of the stride, deg), cut to the first harmonics; rad."""
     closed = [*knots, (knots[0][0] + 100, knots[0][1])]
     spline = CubicSpline([x / 100 for x, _ in closed], [math.radians(y) for _, y in closed], bc_type="periodic")
     samples = np.arange(256) / 256
@@ -68,7 +73,7 @@ def _series(knots: list[tuple[float, float]]) -> FourierCurve:
     return FourierCurve(float(spectrum[0].real), 2 * kept.real, -2 * kept.imag)
 
 
-JOINT_CURVES: dict[str, FourierCurve] = {name: _series(knots) for name, knots in _KNOTS_PER_CENT_DEG.items()}
+JOINT_CURVES: dict[str, FourierCurve] = {name: series_through(knots) for name, knots in _KNOTS_PER_CENT_DEG.items()}
 """By degree of freedom without its side; the pelvis in phase with the right leg."""
 
 HEEL_STRIKE_PITCH = math.radians(14)
@@ -90,6 +95,21 @@ FOOT_PITCH: Curve = sum_of(
 
 ONTO_FOREFOOT: Curve = smooth_step(FLAT_FROM, FLAT_TO)
 """Share of the foot's load that the ball of the foot carries; the heel has the rest."""
+
+
+@dataclass(frozen=True)
+class GaitCurves:
+    """How a person's joints and feet move over one stride at amplitude 1."""
+
+    joints: Mapping[str, FourierCurve]
+    """rad, by degree of freedom without its side, as in JOINT_CURVES."""
+    foot_pitch: Curve
+    """rad, as FOOT_PITCH."""
+    onto_forefoot: Curve
+    """As ONTO_FOREFOOT."""
+
+
+WALKING = GaitCurves(JOINT_CURVES, FOOT_PITCH, ONTO_FOREFOOT)
 
 
 def support_curve(opposite_contact: float) -> Curve:

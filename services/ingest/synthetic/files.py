@@ -1,4 +1,4 @@
-"""A synthetic walk as a recording folder: the same files that any laboratory could write, and a recording.toml."""
+"""A synthetic session as a recording folder: the files that any laboratory could write, and a recording.toml."""
 
 import csv
 from pathlib import Path
@@ -8,19 +8,20 @@ from numpy.typing import NDArray
 
 from schemas.session import SensorDescription, SessionDescription, WalkPath
 from services.ingest.manifest import FILE_NAME
-from services.ingest.synthetic.parameters import WalkParameters
-from services.ingest.synthetic.walk import Block, SyntheticWalk
+from services.ingest.synthetic.motions import parse_motion
+from services.ingest.synthetic.session import Block
 
 TRUTH_FILE = "truth.csv"
 _IMU_HEADER = ["time_s", "gyr_x", "gyr_y", "gyr_z", "acc_x", "acc_y", "acc_z"]
 
 
-def write_recording(folder: Path, walk: str = "", walk_path: WalkPath = "turning") -> None:
-    """Write the walk of `speed=1.1&seed=3` to a folder, which is made. Raises SourceError for an unknown option.
+def write_recording(folder: Path, options: str = "", walk_path: WalkPath = "turning", *, motion: str = "walk") -> None:
+    """Write the walk of `speed=1.1&seed=3`, or another motion, to a folder, which is made.
 
-    `walk_path` is what the recording asks of an estimator; it does not make the walk straight.
+    `walk_path` is what the recording asks of an estimator; it does not make the walk straight. Raises SourceError for
+    an unknown motion or option.
     """
-    source = SyntheticWalk(WalkParameters.parse(walk))
+    source = parse_motion(motion, options)
     folder.mkdir(parents=True, exist_ok=True)
     blocks = list(source.samples())
     description = source.description().model_copy(update={"walk_path": walk_path})
@@ -29,7 +30,7 @@ def write_recording(folder: Path, walk: str = "", walk_path: WalkPath = "turning
     if description.reference:
         header = ["time_s", *(channel.name for channel in description.reference)]
         _write(folder / TRUTH_FILE, header, [_truth_rows(block) for block in blocks])
-    (folder / FILE_NAME).write_text(_manifest(description, walk), encoding="utf-8")
+    (folder / FILE_NAME).write_text(_manifest(description, f'--{motion} "{options}"'), encoding="utf-8")
 
 
 def _imu_rows(block: Block, sensor: int) -> NDArray[np.float64]:
@@ -49,10 +50,10 @@ def _write(path: Path, header: list[str], parts: list[NDArray[np.float64]]) -> N
             writer.writerows([f"{value:.9g}" for value in row] for row in part)
 
 
-def _manifest(description: SessionDescription, walk: str) -> str:
+def _manifest(description: SessionDescription, options: str) -> str:
     body = description.anthropometry
     lines = [
-        f'# Written by `ambula synth --walk "{walk}"`; the truth beside it is exact.',
+        f"# Written by `ambula synth {options}`; the truth beside it is exact.",
         f'title = "{description.title}"',
         f'protocol = "{description.protocol}"',
         f'walk_path = "{description.walk_path}"',

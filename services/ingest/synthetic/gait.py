@@ -12,7 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from schemas.vocabulary import LOWER_BODY, PELVIS_ROTATIONS, Segment, Side
-from services.ingest.synthetic.curves import FOOT_PITCH, JOINT_CURVES, ONTO_FOREFOOT, STANCE, support_curve
+from services.ingest.synthetic.curves import STANCE, WALKING, GaitCurves, support_curve
 from services.ingest.synthetic.jets import Array, Jet
 from services.ingest.synthetic.rigid import BodyMotion, PointMotion, at_rest
 
@@ -55,24 +55,26 @@ class WalkingBody:
 
 @dataclass(frozen=True)
 class Gait:
-    """A body and its way of walking. Lengths in m; `asymmetry` as in WalkParameters."""
+    """A body and its way of moving. Lengths in m; `asymmetry` as in WalkParameters."""
 
     thigh_length: float
     shank_length: float
     hip_width: float
     asymmetry: float = 0.0
+    curves: GaitCurves = WALKING
 
     def angles(self, strides: Strides) -> dict[str, Jet]:
         """The 15 coordinates of LOWER_BODY, in order; the heading is part of the pelvis rotation."""
         found: dict[str, Jet] = {}
+        curves = self.curves.joints
         for dof in LOWER_BODY:
             name, _, side = dof.name.rpartition("_")
-            paired = name in JOINT_CURVES
+            paired = name in curves
             phase = self._leg_phase(strides.phase, Side(side)) if paired else strides.phase
             amplitude = strides.amplitude
             if paired and name.endswith("flexion"):
                 amplitude = amplitude.scaled(self._vigour(Side(side)))
-            found[dof.name] = phase.through(JOINT_CURVES[name if paired else dof.name]) * amplitude
+            found[dof.name] = phase.through(curves[name if paired else dof.name]) * amplitude
         found["pelvis_rotation"] = found["pelvis_rotation"] + strides.heading
         return found
 
@@ -131,7 +133,7 @@ class Gait:
 
     def _foot(self, strides: Strides, side: Side) -> BodyMotion:
         """The foot keeps to the heading and pitches against the ground, whatever the shank does above it."""
-        pitch = self._leg_phase(strides.phase, side).through(FOOT_PITCH) * strides.amplitude
+        pitch = self._leg_phase(strides.phase, side).through(self.curves.foot_pitch) * strides.amplitude
         level = at_rest(len(strides.phase.value)).turned((0, 1, 0), strides.heading)
         return level.turned((0, 0, 1), pitch.scaled(self._vigour(side)))
 
@@ -155,7 +157,7 @@ class Gait:
         loads = {Side.RIGHT: right, Side.LEFT: right.scaled(-1.0).shifted(1.0)}
         supports = []
         for side, load in loads.items():
-            forefoot = self._leg_phase(strides.phase, side).through(ONTO_FOREFOOT)
+            forefoot = self._leg_phase(strides.phase, side).through(self.curves.onto_forefoot)
             foot = hung[Segment(f"foot_{side}")]
             supports.append((load * forefoot, foot.point(BALL_FROM_ANKLE)))
             supports.append((load * forefoot.scaled(-1.0).shifted(1.0), foot.point(HEEL_FROM_ANKLE)))

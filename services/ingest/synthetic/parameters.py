@@ -1,9 +1,9 @@
-"""Every dial of the synthetic walker, and how it is written in `synthetic:walk?speed=1.1&seed=3`."""
+"""Every dial of the synthetic people, and how it is written in `synthetic:walk?speed=1.1&seed=3`."""
 
 import dataclasses
 import math
 from dataclasses import dataclass, field
-from typing import Any
+from typing import Any, ClassVar, Self
 from urllib.parse import parse_qsl
 
 from services.ingest.errors import InvalidOption
@@ -14,20 +14,21 @@ def _dial(default: float, low: float, high: float, meaning: str) -> Any:
 
 
 @dataclass(frozen=True)
-class WalkParameters:
-    """A walk and the sensors that see it. All in SI; unlikely but possible bodies are allowed, impossible ones not."""
+class SessionParameters:
+    """What every synthetic session has: a body, a schedule of standing and moving, and the sensors that see it.
 
-    speed: float = _dial(1.1, 0.3, 1.6, "m/s, mean over a stride on the straight")
+    All in SI; unlikely but possible bodies are allowed, impossible ones not.
+    """
+
+    motion: ClassVar[str]
+    """Name in `synthetic:<motion>?...`."""
+
     duration: float = _dial(60.0, 5.0, 8 * 3600.0, "s, standing included")
-    seed: int = _dial(0, 0, 2**31, "of everything random: noise, bias, mounting, wander")
-    asymmetry: float = _dial(0.0, 0.0, 0.5, "share by which the left leg swings less; its steps also come off beat")
+    seed: int = _dial(0, 0, 2**31, "of everything random: noise, bias, mounting, wander, a person's own way")
     wander: float = _dial(0.02, 0.0, 0.1, "standard deviation of cadence over time, relative")
     standing: float = _dial(4.0, 3.0, 600.0, "s of quiet standing at the start")
-    stop_every: float = _dial(0.0, 0.0, 3600.0, "s of walking between stops; 0 never stops")
+    stop_every: float = _dial(0.0, 0.0, 3600.0, "s of moving between stops; 0 never stops")
     pause: float = _dial(5.0, 1.0, 600.0, "s of standing at each stop and at the end")
-    turn_every: float = _dial(0.0, 0.0, 3600.0, "s from turn to turn; 0 walks straight on")
-    turn_angle: float = _dial(math.pi, 0.0, 2 * math.pi, "rad per turn, to the left and to the right in turn")
-    turn_time: float = _dial(3.0, 1.0, 30.0, "s that a turn takes")
     rate: float = _dial(100.0, 20.0, 1000.0, "Hz of every sensor")
     feet: int = _dial(0, 0, 1, "1 adds a sensor on each shoe")
     truth: int = _dial(1, 0, 1, "0 leaves out the reference stream")
@@ -42,19 +43,52 @@ class WalkParameters:
     hip_width: float = _dial(0.18, 0.08, 0.35, "m, between the hip centres")
 
     @classmethod
-    def parse(cls, query: str) -> "WalkParameters":
+    def parse(cls, query: str) -> Self:
         """From `speed=1.1&seed=3`. Raises InvalidOption for an unknown name, a word, or a value out of range."""
         try:
             pairs = parse_qsl(query, keep_blank_values=True, strict_parsing=bool(query), max_num_fields=64)
         except ValueError as error:
-            raise InvalidOption(f"{query[:80]!r} is no list of options; write speed=1.1&seed=3") from error
+            raise InvalidOption(f"{query[:80]!r} is no list of options; write seed=3&duration=60") from error
         dials = {dial.name: dial for dial in dataclasses.fields(cls)}
         values: dict[str, float] = {}
         for name, text in pairs:
             if name not in dials:
-                raise InvalidOption(f"synthetic walk has no option {name[:40]!r}; it has {', '.join(dials)}")
+                known = ", ".join(dials)
+                raise InvalidOption(f"synthetic {cls.motion} has no option {name[:40]!r}; it has {known}")
             values[name] = _number(dials[name], text)
         return cls(**values)  # type: ignore[arg-type]
+
+
+@dataclass(frozen=True)
+class WalkParameters(SessionParameters):
+    """A walk."""
+
+    motion: ClassVar[str] = "walk"
+
+    speed: float = _dial(1.1, 0.3, 1.6, "m/s, mean over a stride on the straight")
+    asymmetry: float = _dial(0.0, 0.0, 0.5, "share by which the left leg swings less; its steps also come off beat")
+    turn_every: float = _dial(0.0, 0.0, 3600.0, "s from turn to turn; 0 walks straight on")
+    turn_angle: float = _dial(math.pi, 0.0, 2 * math.pi, "rad per turn, to the left and to the right in turn")
+    turn_time: float = _dial(3.0, 1.0, 30.0, "s that a turn takes")
+
+
+@dataclass(frozen=True)
+class MarchParameters(SessionParameters):
+    """Marching on the spot, as in the trials of Joukov et al. (section IV-B): two minutes at 50 Hz.
+
+    Their 70 steps per minute are 1.167 Hz of the right knee, so that a beat is one cycle of a leg.
+    """
+
+    motion: ClassVar[str] = "march"
+
+    duration: float = _dial(129.0, 5.0, 8 * 3600.0, "s, standing included")
+    rate: float = _dial(50.0, 20.0, 1000.0, "Hz of every sensor")
+    metronome: float = _dial(0.0, 0.0, 110.0, "beats per minute, one a cycle of a leg; 0 marches at the own pace")
+    tempo_changes: int = _dial(0, 0, 1, "1: the beat changes every 30 s, 70 60 50 60 70 80 70 per minute")
+    pace: float = _dial(0.0, 0.0, 1.6, "cycles/s of the own pace; 0 draws it from the seed")
+    lift: float = _dial(0.0, 0.0, 1.5, "rad, how high the thigh is lifted; 0 draws it from the seed")
+    beat_jitter: float = _dial(0.015, 0.0, 0.05, "standard deviation of a cycle's beginning, in cycles")
+    lift_jitter: float = _dial(0.05, 0.0, 0.2, "standard deviation of the lift from cycle to cycle, relative")
 
 
 def _number(dial: "dataclasses.Field[Any]", text: str) -> float:

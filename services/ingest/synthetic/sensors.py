@@ -10,7 +10,7 @@ from scipy.spatial.transform import Rotation
 from schemas.session import Placement, SensorDescription
 from schemas.vocabulary import Segment
 from services.ingest.synthetic.jets import Array, Jet
-from services.ingest.synthetic.parameters import WalkParameters
+from services.ingest.synthetic.parameters import SessionParameters
 from services.ingest.synthetic.rigid import BodyMotion, PointMotion
 from services.ingest.units import LOCAL_GRAVITY
 
@@ -47,14 +47,14 @@ _PLACES: tuple[tuple[str, Segment, Placement, tuple[float, float, float], tuple[
 # fmt: on
 
 
-def mounts(parameters: WalkParameters) -> list[Mount]:
+def mounts(parameters: SessionParameters) -> list[Mount]:
     """The sensors of a session, turned and biased at random by its seed."""
     places = [place for place in _PLACES if parameters.feet or not place[0].startswith("foot")]
     return [_mount(parameters, index, *place) for index, place in enumerate(places)]
 
 
 def _mount(
-    parameters: WalkParameters,
+    parameters: SessionParameters,
     index: int,
     name: str,
     segment: Segment,
@@ -128,7 +128,7 @@ def _wobbling(mount: Mount, body: BodyMotion, phase: Jet, amplitude: Jet) -> Bod
 
 
 def spoiled(
-    mount: Mount, truth: tuple[Array, Array], parameters: WalkParameters, rng: np.random.Generator
+    mount: Mount, truth: tuple[Array, Array], parameters: SessionParameters, rng: np.random.Generator
 ) -> tuple[Array, Array]:
     """With bias and white noise."""
     rate, force = truth

@@ -1,4 +1,4 @@
-"""The synthetic walker as a source."""
+"""Synthetic people as a source."""
 
 from collections.abc import Iterator
 from itertools import chain
@@ -8,23 +8,22 @@ from schemas.session import SessionDescription
 from schemas.signals import IMU
 from services.flow.message import Stream
 from services.ingest.driver import SourceMessage
-from services.ingest.errors import UnknownSource
 from services.ingest.identity import Identity
-from services.ingest.synthetic.parameters import WalkParameters
-from services.ingest.synthetic.walk import HUB, Block, SyntheticWalk
+from services.ingest.synthetic.motions import parse_motion
+from services.ingest.synthetic.session import HUB, Block, SyntheticSession
 from services.ingest.tracks import hub_messages, in_order, reference_messages
 
 
-class WalkSource:
-    """Samples of a synthetic walk with its truth beside them."""
+class SyntheticSource:
+    """Samples of a synthetic session with its truth beside them."""
 
-    def __init__(self, parameters: WalkParameters, identity: Identity) -> None:
-        self._walk = SyntheticWalk(parameters)
+    def __init__(self, session: SyntheticSession, identity: Identity) -> None:
+        self._session = session
         self._identity = identity
 
     def describe(self) -> SessionDescription:
         """The session, with what the operator chose."""
-        description = self._walk.description(self._identity.session, self._identity.started_unix_ns)
+        description = self._session.description(self._identity.session, self._identity.started_unix_ns)
         return description.model_copy(
             update={
                 "estimator": self._identity.estimator or description.estimator,
@@ -34,14 +33,14 @@ class WalkSource:
 
     def messages(self) -> Iterator[SourceMessage]:
         """One message per tick, truth beside it."""
-        return chain.from_iterable(self._block_messages(block) for block in self._walk.samples())
+        return chain.from_iterable(self._block_messages(block) for block in self._session.samples())
 
     def rejections(self) -> list[Rejection]:
         """None: whatever is made is delivered."""
         return []
 
     def _block_messages(self, block: Block) -> Iterator[SourceMessage]:
-        parameters = self._walk.parameters
+        parameters = self._session.parameters
         tick_ns = round(1e9 / parameters.rate)
         streams = [hub_messages(Stream(IMU, HUB), block.sensors, tick_ns)]
         if parameters.truth:
@@ -49,9 +48,7 @@ class WalkSource:
         return in_order(streams)
 
 
-def open_synthetic(what: str, identity: Identity) -> WalkSource:
+def open_synthetic(what: str, identity: Identity) -> SyntheticSource:
     """From what follows `synthetic:`, e.g. `walk?speed=1.1&seed=3`. Raises SourceError."""
-    name, _, query = what.partition("?")
-    if name != "walk":
-        raise UnknownSource(f"synthetic:{name[:40]} is unknown; there is synthetic:walk")
-    return WalkSource(WalkParameters.parse(query), identity)
+    name, _, options = what.partition("?")
+    return SyntheticSource(parse_motion(name, options), identity)

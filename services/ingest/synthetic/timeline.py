@@ -1,4 +1,4 @@
-"""When the walker stands, walks and turns: phase, amplitude and heading over time, each with two derivatives."""
+"""When a synthetic person stands, moves and turns: phase, amplitude and heading over time, with two derivatives."""
 
 import math
 from dataclasses import dataclass
@@ -7,7 +7,8 @@ from typing import NamedTuple
 import numpy as np
 
 from services.ingest.synthetic.jets import Array, Jet, smooth_step
-from services.ingest.synthetic.parameters import WalkParameters
+from services.ingest.synthetic.parameters import SessionParameters, WalkParameters
+from services.ingest.synthetic.tempo import OwnPace, Tempo
 
 RESTING_PHASE = 0.56
 """Stride phase at which every walk begins and ends: within double support, the right foot about to leave."""
@@ -17,9 +18,6 @@ WALK_RATIO = 0.0061
 
 TURN_SHORTENING = 0.4
 """Share by which steps are shorter in the middle of a turn."""
-
-_WANDER_HZ = (0.05, 0.083, 0.13)
-"""Hz, slow components of the cadence's wander; their periods share no multiple within minutes."""
 
 
 def stride_frequency_hz(speed: float) -> float:
@@ -43,28 +41,27 @@ class Timeline:
     bouts: tuple[Bout, ...]
     turns: tuple[tuple[float, float], ...]  # start s, angle rad
     turn_time: float
-    frequency_hz: float
-    wander: tuple[tuple[float, float, float], ...]  # amplitude relative, rad/s, rad
+    tempo: Tempo
 
     @classmethod
     def plan(cls, parameters: WalkParameters) -> "Timeline":
         """Standing, then walks and pauses until the end."""
-        rng = np.random.default_rng([parameters.seed, 1])
-        share = parameters.wander * math.sqrt(2 / len(_WANDER_HZ))
-        wander = tuple(
-            (share, 2 * math.pi * hz * rng.uniform(0.8, 1.25), rng.uniform(0, 2 * math.pi)) for hz in _WANDER_HZ
-        )
-        timeline = cls((), (), parameters.turn_time, stride_frequency_hz(parameters.speed), wander)
-        bouts = timeline._plan_bouts(parameters)
-        return cls(bouts, _plan_turns(parameters, bouts), parameters.turn_time, timeline.frequency_hz, wander)
+        tempo = OwnPace.drawn(stride_frequency_hz(parameters.speed), parameters.wander, parameters.seed)
+        bouts = plan_bouts(parameters, tempo)
+        return cls(bouts, _plan_turns(parameters, bouts), parameters.turn_time, tempo)
+
+    @property
+    def frequency_hz(self) -> float:
+        """Strides per second, nominal."""
+        return self.tempo.frequency_hz
 
     def phase(self, time_s: Array) -> Jet:
         """Strides since the start; stands still between the walks."""
         phase = Jet.constant(RESTING_PHASE, time_s)
         for bout in self.bouts:
             walking = (time_s > bout.start_s) & (time_s <= bout.end_s)
-            advanced = self._walked(bout.start_s, time_s)
-            last = float(np.round(self._walked(bout.start_s, np.array([bout.end_s])).value[0]))
+            advanced = self.tempo.walked(bout.start_s, time_s)
+            last = float(np.round(self.tempo.walked(bout.start_s, np.array([bout.end_s])).value[0]))
             phase = Jet(
                 np.where(walking, bout.first_phase + advanced.value, phase.value),
                 np.where(walking, advanced.rate, phase.rate),
@@ -99,40 +96,32 @@ class Timeline:
         within = [(time_s > bout.start_s) & (time_s <= bout.end_s) for bout in self.bouts]
         return np.any(within, axis=0) if within else np.zeros(len(time_s), dtype=bool)
 
-    def _walked(self, start_s: float, time_s: Array) -> Jet:
-        """Strides since `start_s`: the integral of frequency x (1 + sum of a sin(w t + p))."""
-        strides, rate = time_s - start_s, np.ones_like(time_s)
-        slope = np.zeros_like(time_s)
-        for amplitude, angular, offset in self.wander:
-            angle = angular * time_s + offset
-            strides = strides + amplitude / angular * (math.cos(angular * start_s + offset) - np.cos(angle))
-            rate = rate + amplitude * np.sin(angle)
-            slope = slope + amplitude * angular * np.cos(angle)
-        return Jet(strides, rate, slope).scaled(self.frequency_hz)
 
-    def _plan_bouts(self, parameters: WalkParameters) -> tuple[Bout, ...]:
-        bouts: list[Bout] = []
-        start_s, phase = parameters.standing, RESTING_PHASE
-        latest_end = parameters.duration - min(parameters.pause, 0.2 * parameters.duration)
-        while True:
-            wanted = latest_end if parameters.stop_every == 0 else min(start_s + parameters.stop_every, latest_end)
-            strides = math.floor(float(self._walked(start_s, np.array([wanted])).value[0]))
-            if strides < 3:
-                return tuple(bouts)
-            end_s = self._time_of(start_s, strides, wanted)
-            bouts.append(Bout(start_s, end_s, phase))
-            start_s, phase = end_s + parameters.pause, phase + strides
+def plan_bouts(parameters: SessionParameters, tempo: Tempo) -> tuple[Bout, ...]:
+    """Bouts of whole strides, with pauses between them and at the end."""
+    bouts: list[Bout] = []
+    start_s, phase = parameters.standing, RESTING_PHASE
+    latest_end = parameters.duration - min(parameters.pause, 0.2 * parameters.duration)
+    while True:
+        wanted = latest_end if parameters.stop_every == 0 else min(start_s + parameters.stop_every, latest_end)
+        strides = math.floor(float(tempo.walked(start_s, np.array([wanted])).value[0]))
+        if strides < 3:
+            return tuple(bouts)
+        end_s = _time_of(tempo, start_s, strides, wanted)
+        bouts.append(Bout(start_s, end_s, phase))
+        start_s, phase = end_s + parameters.pause, phase + strides
 
-    def _time_of(self, start_s: float, strides: int, latest_s: float) -> float:
-        """When so many strides are done, by bisection: frequency is positive, so strides grow with time."""
-        low, high = start_s, latest_s
-        for _ in range(60):
-            middle = (low + high) / 2
-            if float(self._walked(start_s, np.array([middle])).value[0]) < strides:
-                low = middle
-            else:
-                high = middle
-        return high
+
+def _time_of(tempo: Tempo, start_s: float, strides: int, latest_s: float) -> float:
+    """When so many strides are done, by bisection: frequency is positive, so strides grow with time."""
+    low, high = start_s, latest_s
+    for _ in range(60):
+        middle = (low + high) / 2
+        if float(tempo.walked(start_s, np.array([middle])).value[0]) < strides:
+            low = middle
+        else:
+            high = middle
+    return high
 
 
 def _dip(clock: Jet, start_s: float, length_s: float) -> Jet:

@@ -1,140 +1,35 @@
-"""A whole session of the synthetic walker, block by block: description, samples and truth. Pure."""
+"""The synthetic walk. Pure."""
 
-import math
-from collections.abc import Iterator
-from dataclasses import dataclass
-from functools import cached_property
-
-import numpy as np
-from scipy.interpolate import PchipInterpolator
 from scipy.optimize import brentq
 
-from schemas.session import Anthropometry, HubDescription, ReferenceChannel, SessionDescription
-from schemas.vocabulary import LOWER_BODY, Side
-from services.ingest.synthetic.gait import Gait, Strides, WalkingBody
-from services.ingest.synthetic.jets import Array
+from services.ingest.synthetic.gait import Gait
+from services.ingest.synthetic.jets import Array, Jet
 from services.ingest.synthetic.parameters import WalkParameters
-from services.ingest.synthetic.rigid import PointMotion
-from services.ingest.synthetic.sensors import Mount, measure, mounts, spoiled
+from services.ingest.synthetic.session import AMPLITUDES, SyntheticSession
 from services.ingest.synthetic.timeline import Timeline
-from services.ingest.tracks import ImuTrack, ReferenceTrack
-
-HUB = "walker"
-BLOCK_SAMPLES = 1000
-"""Samples made at a time: memory stays bounded however long the walk is."""
 
 COMFORTABLE = WalkParameters()
 
-_AMPLITUDES = np.linspace(0.0, 1.6, 33)
 
+class SyntheticWalk(SyntheticSession):
+    """Quiet standing, then walking at a speed."""
 
-@dataclass(frozen=True)
-class Block:
-    """Consecutive samples of every sensor in the order of the description, and the truth at the same instants."""
-
-    sensors: list[ImuTrack]
-    reference: ReferenceTrack
-
-
-class SyntheticWalk:
-    """Deterministic by its parameters: the same walk, sample by sample, whenever and however often it is made."""
+    protocol = "quiet standing, then walking"
 
     def __init__(self, parameters: WalkParameters = COMFORTABLE) -> None:
-        self.parameters = parameters
-        self.timeline = Timeline.plan(parameters)
-        self.gait = Gait(parameters.thigh_length, parameters.shank_length, parameters.hip_width, parameters.asymmetry)
-        self.mounts: list[Mount] = mounts(parameters)
-
-    @property
-    def sample_count(self) -> int:
-        """Samples of each sensor."""
-        return math.floor(self.parameters.duration * self.parameters.rate)
-
-    @cached_property
-    def _stride_length(self) -> PchipInterpolator:
-        """m per stride over amplitude."""
-        return PchipInterpolator(_AMPLITUDES, self.gait.stride_length(_AMPLITUDES))
-
-    @cached_property
-    def amplitude_of_walk(self) -> float:
+        gait = Gait(parameters.thigh_length, parameters.shank_length, parameters.hip_width, parameters.asymmetry)
+        super().__init__(parameters, Timeline.plan(parameters), gait)
+        self.title = f"Synthetic walk at {parameters.speed:g} m/s (seed {parameters.seed})"
+        self.amplitude_of_walk = self._amplitude_at(parameters.speed)
         """Amplitude at which stride length times stride frequency is the speed asked for."""
-        wanted = self.parameters.speed / self.timeline.frequency_hz
-        longest = float(self._stride_length(_AMPLITUDES[-1]))
+
+    def amplitude(self, time_s: Array) -> Jet:
+        """Rises over the first stride of a walk and falls over its last, less in a turn."""
+        return self.timeline.amplitude(time_s).scaled(self.amplitude_of_walk)
+
+    def _amplitude_at(self, speed: float) -> float:
+        wanted = speed / self.timeline.frequency_hz
+        longest = float(self.stride_length(AMPLITUDES[-1]))
         if wanted >= longest:
-            return float(_AMPLITUDES[-1])
-        return float(brentq(lambda amplitude: float(self._stride_length(amplitude)) - wanted, 0.0, _AMPLITUDES[-1]))
-
-    def description(self, session: str = "synthetic", started_unix_ns: int = 0) -> SessionDescription:
-        """The session as it would be served live."""
-        parameters = self.parameters
-        return SessionDescription(
-            session=session,
-            title=f"Synthetic walk at {parameters.speed:g} m/s (seed {parameters.seed})",
-            started_unix_ns=started_unix_ns,
-            origin="synthetic",
-            protocol="quiet standing, then walking",
-            estimator="rhythmic_ekf",
-            walk_path="turning",
-            hubs=[HubDescription(name=HUB, sensors=[mount.description for mount in self.mounts])],
-            anthropometry=Anthropometry(
-                height_m=None,
-                mass_kg=None,
-                thigh_length_m=parameters.thigh_length,
-                shank_length_m=parameters.shank_length,
-                hip_width_m=parameters.hip_width,
-                source="measured",
-            ),
-            standing=[],
-            reference=reference_channels() if parameters.truth else [],
-            duration_s=(self.sample_count - 1) / parameters.rate,
-        )
-
-    def strides(self, time_s: Array) -> Strides:
-        """Where the walker is at any instants."""
-        amplitude = self.timeline.amplitude(time_s).scaled(self.amplitude_of_walk)
-        return Strides(self.timeline.phase(time_s), amplitude, self.timeline.heading(time_s))
-
-    def body(self, time_s: Array) -> WalkingBody:
-        """The moving body at increasing instants; its path starts at the first of them."""
-        return self.gait.body(self.strides(time_s), time_s)
-
-    def samples(self) -> Iterator[Block]:
-        """The session from its first sample to its last."""
-        start = np.zeros(3)
-        for index, first in enumerate(range(0, self.sample_count, BLOCK_SAMPLES)):
-            count = min(BLOCK_SAMPLES, self.sample_count - first)
-            # One instant more than is delivered tells where the next block's path begins.
-            numbers = np.arange(first, first + count + 1)
-            time_s = numbers / self.parameters.rate
-            captured_ns = np.round(time_s * 1e9).astype(np.int64)[:-1]
-            strides = self.strides(time_s)
-            body = self.gait.body(strides, time_s)
-            sensors = [self._track(mount, index, body, strides, captured_ns) for mount in self.mounts]
-            yield Block(sensors, ReferenceTrack(captured_ns, self._truth(body, strides, start)[:-1]))
-            start = start + body.pelvis.position[-1] * [1, 0, 1]
-
-    def _track(
-        self, mount: Mount, block: int, body: WalkingBody, strides: Strides, captured_ns: "np.typing.NDArray[np.int64]"
-    ) -> ImuTrack:
-        truth = measure(mount, body.segments[mount.description.segment], strides.phase, strides.amplitude)
-        rng = np.random.default_rng([self.parameters.seed, 3, self.mounts.index(mount), block])
-        rate, force = spoiled(mount, truth, self.parameters, rng)
-        return ImuTrack(captured_ns, rate[:-1], force[:-1])
-
-    def _truth(self, body: WalkingBody, strides: Strides, start: Array) -> Array:
-        walking = strides.phase.rate
-        speed = np.asarray(self._stride_length(strides.amplitude.value)) * walking
-        columns = [body.angles[dof.name].value for dof in LOWER_BODY]
-        columns += [body.contact[side] for side in Side]
-        columns += [speed, 2 * math.pi * strides.phase.value, 2 * math.pi * walking]
-        points: list[PointMotion] = [body.pelvis, *(body.ankle(side) for side in Side)]
-        return np.column_stack([*columns, *(point.position + start for point in points)])
-
-
-def reference_channels() -> list[ReferenceChannel]:
-    """The truth that travels beside the samples."""
-    channels = [(dof.name, "rad") for dof in LOWER_BODY]
-    channels += [(f"foot_contact_{side}", "1") for side in Side]
-    channels += [("walking_speed", "m/s"), ("stride_phase", "rad"), ("stride_frequency", "rad/s")]
-    channels += [(f"{point}_{axis}", "m") for point in ("pelvis", "ankle_left", "ankle_right") for axis in "xyz"]
-    return [ReferenceChannel(name=name, unit=unit) for name, unit in channels]
+            return float(AMPLITUDES[-1])
+        return float(brentq(lambda amplitude: float(self.stride_length(amplitude)) - wanted, 0.0, AMPLITUDES[-1]))

@@ -16,7 +16,7 @@ from services.ingest.synthetic import SyntheticWalk, WalkParameters, write_recor
 from services.ingest.synthetic.gait import BALL_FROM_ANKLE, HEEL_FROM_ANKLE, Strides
 from services.ingest.synthetic.jets import Jet
 from services.ingest.synthetic.sensors import measure
-from services.ingest.synthetic.walk import reference_channels
+from services.ingest.synthetic.session import reference_channels
 
 PERFECT = WalkParameters(
     duration=30.0, gyro_noise=0.0, accel_noise=0.0, gyro_bias=0.0, accel_bias=0.0, wander=0.0, feet=1

@@ -1,0 +1,114 @@
+"""Marching on the spot: thighs lifted in turn, after a metronome or at an own pace. Pure.
+
+How high and how fast a person marches is drawn from the seed, from ranges that healthy adults are seen to choose:
+thighs lifted by 35 to 65 degrees, shins hanging down or tucked in a little, 0.85 to 1.1 cycles of a leg per second.
+The knots are round numbers drawn by eye for a thigh lifted by 50 degrees; they are no recording of anybody. The ball of
+the foot lands first and leaves last, and the heel is as high in between as the bent leg leaves it.
+"""
+
+import math
+
+import numpy as np
+
+from services.ingest.synthetic.curves import JOINT_CURVES, FourierCurve, GaitCurves, series_through
+from services.ingest.synthetic.gait import BALL_FROM_ANKLE, Gait
+from services.ingest.synthetic.jets import Array, Jet
+from services.ingest.synthetic.parameters import MarchParameters
+from services.ingest.synthetic.session import SyntheticSession
+from services.ingest.synthetic.tempo import Jittered, Metronome, OwnPace, Tempo, jet_of, random_spline
+from services.ingest.synthetic.timeline import Timeline, plan_bouts
+
+PUBLISHED_BEATS_PER_MIN = (70.0, 60.0, 50.0, 60.0, 70.0, 80.0, 70.0)
+"""Of the trial whose metronome changes (figure 10)."""
+BEAT_LASTS_S = 30.0
+OWN_PACE_HZ = (0.85, 1.1)
+LIFT = (0.61, 1.13)
+"""rad, 35 to 65 deg."""
+TUCK = (0.9, 1.15)
+"""Knee flexion against that of the curve drawn below, at the same lift."""
+SIDEWAYS = 0.5
+"""Share of a walk's movement in the other degrees of freedom."""
+
+_DRAWN_LIFT = math.radians(50.0)
+_KNOTS_PER_CENT_DEG: dict[str, list[tuple[float, float]]] = {
+    "hip_flexion": [
+        (0, 14), (6, 8), (12, 3), (20, 1.5), (31, 1), (42, 1.5), (50, 3), (56, 8), (62, 14), (71, 36), (81, 50),
+        (91, 36),
+    ],
+    "knee_flexion": [
+        (0, 30), (6, 16), (12, 6), (20, 3), (31, 2), (42, 3), (50, 6), (56, 16), (62, 30), (71, 62), (81, 78),
+        (91, 62),
+    ],
+}  # fmt: skip
+_TOES_HANG_DEG = ((71.0, -30.0), (81.0, -33.0), (91.0, -30.0))
+_ON_THE_GROUND = np.array([0, 3, 6, 9, 12, 16, 22, 31, 40, 46, 50, 53, 56, 59, 62]) / 100
+"""Phases of the stance at which the foot's pitch is known."""
+
+
+def marching_curves(lift: float, tuck: float, thigh_length: float, shank_length: float) -> GaitCurves:
+    """Curves of a person who lifts the thighs by `lift` rad and flexes the knees `tuck` times as much as drawn."""
+    share = lift / _DRAWN_LIFT
+    joints: dict[str, FourierCurve] = {name: curve.scaled(SIDEWAYS) for name, curve in JOINT_CURVES.items()}
+    hip = series_through(_KNOTS_PER_CENT_DEG["hip_flexion"]).scaled(share)
+    knee = series_through(_KNOTS_PER_CENT_DEG["knee_flexion"]).scaled(share * tuck)
+    joints["hip_flexion"], joints["knee_flexion"] = hip, knee
+    hip_angle, knee_angle = hip(_ON_THE_GROUND)[0], knee(_ON_THE_GROUND)[0]
+    leg = thigh_length * np.cos(hip_angle) + shank_length * np.cos(knee_angle - hip_angle)
+    pitch = np.degrees(_pitch_on_the_ball(thigh_length + shank_length - leg))
+    hang = [(per_cent, min(deg, pitch[0], pitch[-1])) for per_cent, deg in _TOES_HANG_DEG]
+    foot = series_through([*zip((100 * _ON_THE_GROUND).tolist(), pitch.tolist(), strict=True), *hang])
+    return GaitCurves(joints, foot, _always_on_the_ball)
+
+
+def _pitch_on_the_ball(shortening: Array) -> Array:
+    """Pitch, rad, toes up positive, that lifts the ankle over a resting ball by what the leg is shorter, m.
+
+    With the ball x ahead of the ankle and d below it: x sin(e) + d cos(e) = d + shortening, e = -pitch.
+    """
+    x, d = BALL_FROM_ANKLE[0], -BALL_FROM_ANKLE[1]
+    sine = np.minimum((d + shortening) / math.hypot(x, d), 1.0)
+    return np.asarray(math.atan2(d, x) - np.arcsin(sine))
+
+
+def _always_on_the_ball(phase: Array) -> tuple[Array, Array, Array]:
+    return np.ones_like(phase), np.zeros_like(phase), np.zeros_like(phase)
+
+
+class SyntheticMarch(SyntheticSession):
+    """Quiet standing, then marching on the spot."""
+
+    protocol = "quiet standing, then marching on the spot"
+
+    def __init__(self, parameters: MarchParameters) -> None:
+        rng = np.random.default_rng([parameters.seed, 4])
+        pace, lift, tuck = rng.uniform(*OWN_PACE_HZ), rng.uniform(*LIFT), rng.uniform(*TUCK)
+        tempo = _tempo(parameters, parameters.pace or pace, rng)
+        timeline = Timeline(plan_bouts(parameters, tempo), (), 1.0, tempo)
+        legs = parameters.thigh_length, parameters.shank_length
+        gait = Gait(*legs, parameters.hip_width, curves=marching_curves(parameters.lift or lift, tuck, *legs))
+        super().__init__(parameters, timeline, gait)
+        self._lifts = random_spline(parameters.lift_jitter, 1 / tempo.frequency_hz, parameters.duration, rng)
+        self.title = f"Synthetic march {_words(parameters)} (seed {parameters.seed})"
+
+    def amplitude(self, time_s: Array) -> Jet:
+        """Rises over the first cycle and falls over the last; in between no lift is quite as high as the last one."""
+        return self.timeline.amplitude(time_s) * jet_of(self._lifts, time_s).shifted(1.0)
+
+
+def _tempo(parameters: MarchParameters, pace_hz: float, rng: np.random.Generator) -> Tempo:
+    tempo: Tempo
+    if parameters.tempo_changes:
+        beats = tuple(beat / 60 for beat in PUBLISHED_BEATS_PER_MIN)
+        tempo = Metronome(beats, tuple(parameters.standing + BEAT_LASTS_S * k for k in range(len(beats))))
+    elif parameters.metronome > 0:
+        tempo = Metronome((parameters.metronome / 60,), (0.0,))
+    else:
+        tempo = OwnPace.drawn(pace_hz, parameters.wander, parameters.seed)
+    early = random_spline(parameters.beat_jitter, 1 / tempo.frequency_hz, parameters.duration, rng)
+    return Jittered(tempo, early)
+
+
+def _words(parameters: MarchParameters) -> str:
+    if parameters.tempo_changes:
+        return "after a metronome that changes"
+    return f"after a metronome at {parameters.metronome:g} per min" if parameters.metronome else "at an own pace"

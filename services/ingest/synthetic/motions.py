@@ -1,0 +1,22 @@
+"""The synthetic motions by name."""
+
+from collections.abc import Callable
+
+from services.ingest.errors import UnknownSource
+from services.ingest.synthetic.march import SyntheticMarch
+from services.ingest.synthetic.parameters import MarchParameters, WalkParameters
+from services.ingest.synthetic.session import SyntheticSession
+from services.ingest.synthetic.walk import SyntheticWalk
+
+MOTIONS: dict[str, Callable[[str], SyntheticSession]] = {
+    "walk": lambda options: SyntheticWalk(WalkParameters.parse(options)),
+    "march": lambda options: SyntheticMarch(MarchParameters.parse(options)),
+}
+
+
+def parse_motion(name: str, options: str) -> SyntheticSession:
+    """The session of a motion with options such as `speed=1.1&seed=3`. Raises SourceError."""
+    if name not in MOTIONS:
+        known = " and ".join(f"synthetic:{motion}" for motion in MOTIONS)
+        raise UnknownSource(f"synthetic:{name[:40]} is unknown; there are {known}")
+    return MOTIONS[name](options)
