@@ -3,7 +3,7 @@
 from pydantic import Field
 
 from schemas.payload import Payload, QuaternionWXYZ, SessionTime, Vector3
-from schemas.vocabulary import Segment, SensorState
+from schemas.vocabulary import EventSource, Segment, SensorState, Side
 
 
 class JointState(Payload):
@@ -21,6 +21,26 @@ class JointState(Payload):
         description="segments with a sensor of their own: the whole chain of angles gives their tilt in the world "
         "rightly, also where the joints between them and the pelvis are not valid one by one",
     )
+
+
+class SegmentSamples(Payload):
+    """How one segment moves, at its sensor, in its heading frame: x forward, y up, z right.
+
+    The frame turns with the segment's own heading, but neither with tilt nor with obliquity: z is the segment's
+    right made level. So no heading has to be known in the world.
+    """
+
+    segment: Segment
+    captured_ns: list[SessionTime]
+    acceleration: list[Vector3] = Field(description="m/s^2, without gravity")
+    angular_velocity: list[Vector3] = Field(description="rad/s")
+
+
+class SegmentMotion(Payload):
+    """Motion of segments whose sensor alone tells the gait events of a leg; message for message beside joint_state."""
+
+    captured_ns: list[SessionTime] = Field(description="those of the joint state; not every segment has a sample each")
+    segments: list[SegmentSamples]
 
 
 class SensorAlignment(Payload):
@@ -42,6 +62,8 @@ class Calibration(Payload):
     datum: str = Field(description="what zero means, e.g. quiet standing, both segments vertical")
     quality: float = Field(ge=0, le=1, description="the worst sensor's quality")
     sensors: list[SensorAlignment]
+    events_from: dict[Side, EventSource] = Field(description="what tells the gait events of each leg")
+    unused: dict[str, str] = Field(description="sensors that are not used, and why, by name")
 
 
 class SegmentPose(Payload):

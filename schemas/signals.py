@@ -8,7 +8,7 @@ from schemas.checkpoint import Checkpoint
 from schemas.gait import GaitEvent, Stride
 from schemas.health import Gap, Health, Progress
 from schemas.imu import ImuBatch, ReferenceBatch
-from schemas.kinematics import Calibration, JointState, LivePose
+from schemas.kinematics import Calibration, JointState, LivePose, SegmentMotion
 from schemas.metrics import SessionMetrics
 from schemas.payload import Payload
 from schemas.rhythm import Rhythm
@@ -50,6 +50,10 @@ JOINT_STATE = Signal(
     "joint_state", JointState, "estimation", Quality.LOSSLESS, "derived", 100.0, "joint coordinates with deviations"
 )
 RHYTHM = Signal("rhythm", Rhythm, "estimation", Quality.LOSSLESS, "derived", 100.0, "stride phase and frequency")
+SEGMENT_MOTION = Signal(
+    "segment_motion", SegmentMotion, "estimation", Quality.LOSSLESS, "derived", 100.0, "acceleration and turning of "
+    "segments whose lone sensor tells gait events",
+)  # fmt: skip
 LIVE_POSE = Signal("live_pose", LivePose, "estimation", Quality.LIVE, None, 25.0, "the skeleton on the screen")
 GAIT_EVENT = Signal(
     "gait_event", GaitEvent, "segmentation", Quality.LOSSLESS, "derived", None, "initial contact and toe-off"
@@ -66,7 +70,7 @@ CHECKPOINT = Signal(
 PROGRESS = Signal("progress", Progress, "every consumer", Quality.LIVE, None, 10.0, "how far a consumer has come")
 
 SIGNALS: tuple[Signal, ...] = (
-    IMU, REFERENCE, SESSION, CALIBRATION, JOINT_STATE, RHYTHM, LIVE_POSE,
+    IMU, REFERENCE, SESSION, CALIBRATION, JOINT_STATE, RHYTHM, SEGMENT_MOTION, LIVE_POSE,
     GAIT_EVENT, STRIDE, METRICS, GAP, HEALTH, CHECKPOINT, PROGRESS,
 )  # fmt: skip
 BY_NAME: dict[str, Signal] = {signal.name: signal for signal in SIGNALS}

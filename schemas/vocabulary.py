@@ -40,6 +40,16 @@ class GaitEventKind(StrEnum):
     TOE_OFF = "toe_off"
 
 
+class EventSource(StrEnum):
+    """What tells the gait events of a leg, best first."""
+
+    FULL_LEG = "full_leg"
+    SHANK = "shank"
+    FOOT = "foot"
+    LOWER_BACK = "lower_back"
+    NOTHING = "nothing"
+
+
 class SensorState(StrEnum):
     """What a therapist is told about a sensor."""
 
@@ -48,6 +58,7 @@ class SensorState(StrEnum):
     MISSING = "missing"
     STUCK = "stuck"
     REJECTED = "rejected"
+    UNUSED = "unused"
 
 
 @dataclass(frozen=True, slots=True)

@@ -27,8 +27,8 @@ from services.estimation.standing import StandingReference
 Array = NDArray[np.float64]
 
 LEGS = (
-    (Segment.THIGH_RIGHT, Segment.SHANK_RIGHT),
-    (Segment.THIGH_LEFT, Segment.SHANK_LEFT),
+    (Segment.THIGH_RIGHT, Segment.SHANK_RIGHT, Segment.FOOT_RIGHT),
+    (Segment.THIGH_LEFT, Segment.SHANK_LEFT, Segment.FOOT_LEFT),
 )
 PELVIS_QUALITY = {True: 0.9, False: 0.2}
 """Quality of a pelvis frame whose placement is known or not."""
@@ -54,6 +54,10 @@ class Alignment:
     R_segment_from_sensor: Array
     quality: Array
     aligned: NDArray[np.bool_]
+
+    def first(self, count: int) -> "Alignment":
+        """The same of the first sensors only."""
+        return Alignment(self.R_segment_from_sensor[:count], self.quality[:count], self.aligned[:count])
 
 
 def placed_right(sensor: SensorDescription, up: Array) -> Array | None:
@@ -93,6 +97,15 @@ def principal_direction(rate: Array, up: Array, moving_rate: float) -> tuple[Arr
     return vectors[:, 1] @ plane, float(max(values[0], 0.0) / values[1]), len(moving)
 
 
+def foot_sign(foot: Array) -> float:
+    """Sign for a foot, from its rate (n,) about the axis at hand.
+
+    The foot turns back fast and briefly as the heel lifts and before the toes come down, forward longer and slower:
+    the third moment of the rate about +right is negative.
+    """
+    return -1.0 if np.mean(foot**3) > 0.0 else 1.0
+
+
 def walking_signs(thigh: Array | None, shank: Array, rate_hz: float) -> tuple[float, float]:
     """Signs for thigh and shank, from their rates (n,) about the axes at hand.
 
@@ -124,10 +137,10 @@ class AxisSearch:
     def axes(self, samples: Array, fresh: NDArray[np.bool_]) -> dict[int, FlexionAxis]:
         """Axes from samples (n, S, 6), fresh (n, S), by sensor."""
         axes: dict[int, FlexionAxis] = {}
-        for thigh, shank in LEGS:
+        for leg in LEGS:
             speaking = np.any(fresh[-self.parameters.silent_ticks :], axis=0).tolist()
-            worn = {s: self._turning(s, samples, fresh) for s in self._wearing(thigh, shank) if speaking[s]}
-            signs = self._signs_by_walk({self.sensors[s].segment: found for s, found in worn.items()}, thigh, shank)
+            worn = {s: self._turning(s, samples, fresh) for s in self._wearing(*leg) if speaking[s]}
+            signs = self._signs_by_walk({self.sensors[s].segment: found for s, found in worn.items()}, *leg)
             for s, (rates, axis, ratio, moving) in worn.items():
                 placed = placed_right(self.sensors[s], self.up(s))
                 sign = signs.get(self.sensors[s].segment, 1.0)
@@ -148,10 +161,10 @@ class AxisSearch:
         return (rates, *principal_direction(rates, self.up(s), self.parameters.moving_rate))
 
     def _signs_by_walk(
-        self, worn: dict[Segment, tuple[Array, Array, float, int]], thigh: Segment, shank: Segment
+        self, worn: dict[Segment, tuple[Array, Array, float, int]], thigh: Segment, shank: Segment, foot: Segment
     ) -> dict[Segment, float]:
         if shank not in worn:
-            return {}
+            return {foot: foot_sign(worn[foot][0] @ worn[foot][1])} if foot in worn else {}
         rate_hz = next(sensor.rate_hz for sensor in self.sensors if sensor.segment is shank)
         shank_rate = worn[shank][0] @ worn[shank][1]
         thigh_rate = worn[thigh][0] @ worn[thigh][1] if thigh in worn else None
@@ -162,8 +175,13 @@ class AxisSearch:
         return dict(zip((thigh, shank), signs, strict=True))
 
     def is_clear(self, axes: dict[int, FlexionAxis], before: dict[int, FlexionAxis]) -> bool:
-        """Every leg sensor has moved enough, swung, and kept its axis since the look before."""
+        """Every leg sensor has moved enough, swung, and kept its axis since the look before.
+
+        A sensor on the lower back alone has no axis to wait for.
+        """
         limits = self.parameters
+        if all(sensor.segment is Segment.PELVIS for sensor in self.sensors):
+            return True
         return bool(axes) and all(
             axis.moving_s >= limits.shortest_moving_s * (1.0 if axis.sign_is_placed else 2.0)
             and axis.fastest >= limits.swing_rate

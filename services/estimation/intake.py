@@ -10,6 +10,8 @@ from schemas.health import Reason
 from schemas.imu import ImuBatch, SensorSamples
 from schemas.session import SensorDescription, SessionDescription
 from schemas.signals import IMU
+from schemas.vocabulary import Segment
+from services.biomech.event_sources import lone_segments, worn_segments
 from services.biomech.lower_body import SEGMENTS
 from services.estimation.parameters import EstimationParameters
 from services.estimation.samples import Sample, TickBatch, gather
@@ -37,10 +39,15 @@ class Intake:
 
     def __init__(self, description: SessionDescription, parameters: EstimationParameters) -> None:
         self.streams = tuple(Stream(IMU, hub.name) for hub in description.hubs)
-        self.sensors: list[SensorDescription] = []
-        self._places: list[list[int | None]] = []
-        for hub in description.hubs:
-            self._places.append([self._add(sensor) for sensor in hub.sensors])
+        worn = [sensor for hub in description.hubs for sensor in hub.sensors]
+        lone = lone_segments(worn_segments(description.hubs))
+        of_the_model = [sensor for sensor in worn if sensor.segment in SEGMENTS]
+        self.body_sensors = len(of_the_model)
+        """The sensors of the model come first, then those on feet."""
+        self.sensors = of_the_model + [s for s in worn if s.segment in lone and s.segment not in SEGMENTS]
+        self.unused = {sensor.name: _why_unused(sensor.segment) for sensor in worn if sensor not in self.sensors}
+        """Sensors that are not used, and why."""
+        self._places = [[self._place(sensor) for sensor in hub.sensors] for hub in description.hubs]
         self.checks = SensorChecks([sensor.name for sensor in self.sensors], parameters.checks)
         self._lateness_ns = round(parameters.lateness_s * 1e9)
         self._same_tick_ns = round(parameters.same_tick_s * 1e9)
@@ -49,11 +56,8 @@ class Intake:
         self._waiting: list[_Pending] = []
         self._samples: list[Sample] = []
 
-    def _add(self, sensor: SensorDescription) -> int | None:
-        if sensor.segment not in SEGMENTS:
-            return None
-        self.sensors.append(sensor)
-        return len(self.sensors) - 1
+    def _place(self, sensor: SensorDescription) -> int | None:
+        return self.sensors.index(sensor) if sensor in self.sensors else None
 
     def accept(self, message: Message) -> list[TickBatch]:
         """Take an imu message; the batches that are now complete, in order."""
@@ -135,3 +139,9 @@ class Intake:
         self._samples = [
             Sample(time_ns, place, row) for (time_ns, place), row in zip(state["samples_ns"], values, strict=True)
         ]
+
+
+def _why_unused(segment: Segment) -> str:
+    if segment in (Segment.FOOT_LEFT, Segment.FOOT_RIGHT):
+        return "the shank sensor of this leg tells its gait events"
+    return f"the {segment.value} is not part of the body model"

@@ -1,7 +1,7 @@
 """The picture for a screen: bones, angles, sensors, and what the therapist should do."""
 
 import math
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 
 import numpy as np
 from numpy.typing import NDArray
@@ -59,6 +59,11 @@ def sensor_statuses(
             state = SensorState.CALIBRATING
         statuses.append(SensorStatus(sensor=sensor.name, state=state, since_ns=since_ns))
     return statuses
+
+
+def unused_statuses(unused: Iterable[str]) -> list[SensorStatus]:
+    """Sensors, by name, that were never meant to be used with what else is worn."""
+    return [SensorStatus(sensor=name, state=SensorState.UNUSED, since_ns=0) for name in unused]
 
 
 def sensor_troubles(statuses: Sequence[SensorStatus]) -> str:

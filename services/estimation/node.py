@@ -2,30 +2,29 @@
 
 from collections import deque
 from collections.abc import Iterable
+from dataclasses import replace
 
 import numpy as np
 
 from schemas.health import Rejection
-from schemas.kinematics import Calibration, JointState, SensorAlignment
+from schemas.kinematics import JointState
 from schemas.rhythm import Rhythm
 from schemas.session import SessionDescription
-from schemas.signals import CALIBRATION, JOINT_STATE, LIVE_POSE, RHYTHM, Signal
-from schemas.vocabulary import Segment
-from services.biomech.rotations import quaternion_from_matrix
+from schemas.signals import CALIBRATION, JOINT_STATE, LIVE_POSE, RHYTHM, SEGMENT_MOTION, Signal
+from schemas.vocabulary import LOWER_BODY, Segment
+from services.biomech.event_sources import lone_segments, worn_segments
+from services.estimation.calibration_message import MODEL, calibration_message
 from services.estimation.calibrator import Calibrator, pack_calibrated, unpack_calibrated
 from services.estimation.intake import Intake
-from services.estimation.live_pose import estimated_pose, sensor_statuses, waiting_pose
+from services.estimation.live_pose import estimated_pose, sensor_statuses, unused_statuses, waiting_pose
 from services.estimation.lower_body_filter import Calibrated, LowerBodyFilter, Row
 from services.estimation.parameters import EstimationParameters
 from services.estimation.samples import Tick, TickBatch
+from services.estimation.segment_motion import LoneSegments
 from services.flow.message import Message, Output, Stream
 from services.flow.node import Node, State
 
-MODEL = "lower_body"
-POPULATION = (
-    "population: mean posture of healthy adults' walking; nobody stood still, so angles are right as changes, "
-    "and their zero is uncertain by 5 to 10 degrees"
-)
+TILT, OBLIQUITY = ([dof.name for dof in LOWER_BODY].index(f"pelvis_{name}") for name in ("tilt", "obliquity"))
 
 
 class EstimationNode:
@@ -35,7 +34,7 @@ class EstimationNode:
     all at once when it stands. The numbers do not depend on how the samples were batched into messages.
     """
 
-    outputs: tuple[Signal, ...] = (CALIBRATION, JOINT_STATE, RHYTHM, LIVE_POSE)
+    outputs: tuple[Signal, ...] = (CALIBRATION, JOINT_STATE, RHYTHM, SEGMENT_MOTION, LIVE_POSE)
 
     def __init__(self, description: SessionDescription, parameters: EstimationParameters | None = None) -> None:
         self._description = description
@@ -44,6 +43,7 @@ class EstimationNode:
         self._calibrator = Calibrator(description, self._intake.sensors, self._parameters)
         self._calibrated: Calibrated | None = None
         self._filter: LowerBodyFilter | None = None
+        self._lone: LoneSegments | None = None
         self._next_live_ns = 0
 
     @property
@@ -88,50 +88,42 @@ class EstimationNode:
         everyone = np.ones(len(self._intake.sensors), dtype=np.bool_)
         statuses = sensor_statuses(
             self._intake.sensors, self._intake.checks, batch.captured_ns, self._calibrator.refused, everyone
-        )
+        ) + unused_statuses(self._intake.unused)
         pose = waiting_pose(batch.captured_ns, phase, self._calibrator.message(), statuses)
         return [Output(LIVE_POSE, batch.captured_ns, pose)]
 
     def _start(self, calibrated: Calibrated) -> list[Output]:
         """Publish the calibration and catch up with the walk."""
         self._calibrated = calibrated
-        self._filter = self._new_filter(calibrated)
+        self._filter, self._lone = self._new_filter(calibrated), self._new_lone(calibrated)
         kept = self._calibrator.batches
-        outputs = [Output(CALIBRATION, kept[0].captured_ns, self._describe(calibrated))]
+        message = calibration_message(self._description, self._intake, calibrated)
+        outputs = [Output(CALIBRATION, kept[0].captured_ns, message)]
         while kept:
             outputs += self._estimate(self._filter, kept.pop(0).ticks)
         return outputs
 
     def _new_filter(self, calibrated: Calibrated) -> LowerBodyFilter:
         parameters = self._parameters.filter_of(self._description)
-        return LowerBodyFilter(self._description, self._intake.sensors, calibrated, parameters)
-
-    def _describe(self, calibrated: Calibrated) -> Calibration:
-        alignment = calibrated.alignment
-        sensors = [
-            SensorAlignment(
-                sensor=sensor.name,
-                segment=sensor.segment,
-                quat_segment_from_sensor=quaternion_from_matrix(alignment.R_segment_from_sensor[s]).tolist(),
-                gyro_bias=calibrated.gyro_bias[s].tolist(),
-                quality=float(alignment.quality[s]),
-            )
-            for s, sensor in enumerate(self._intake.sensors)
-            if alignment.aligned[s]
-        ]
-        return Calibration(
-            model=MODEL,
-            estimator=self._description.estimator,
-            method=self._method(calibrated),
-            datum=POPULATION if calibrated.from_walking else "quiet standing: pelvis level, thighs and shanks vertical",
-            quality=min(sensor.quality for sensor in sensors),
-            sensors=sensors,
+        count = self._intake.body_sensors
+        of_body = replace(
+            calibrated, alignment=calibrated.alignment.first(count), gyro_bias=calibrated.gyro_bias[:count]
         )
+        return LowerBodyFilter(self._description, self._intake.sensors[:count], of_body, parameters)
 
-    def _method(self, calibrated: Calibrated) -> str:
-        if calibrated.from_walking:
-            return "walking alone"
-        return "standing, marked by the operator + walking" if self._description.standing else "standing+walking"
+    def _new_lone(self, calibrated: Calibrated) -> LoneSegments | None:
+        segments = lone_segments(worn_segments(self._description.hubs))
+        if not segments:
+            return None
+        alignment, sensors = calibrated.alignment, self._intake.sensors
+        return LoneSegments(
+            sensors,
+            segments,
+            alignment.R_segment_from_sensor,
+            calibrated.gyro_bias,
+            alignment.aligned.tolist(),
+            self._parameters.segment_motion,
+        )
 
     def _estimate(self, running: LowerBodyFilter, ticks: Iterable[Tick]) -> list[Output]:
         """Joint states with their rhythm, a message for each run of equal validity, and the picture when it is due."""
@@ -140,13 +132,17 @@ class EstimationNode:
         valid: list[bool] = []
         observed: list[Segment] = []
         for tick in ticks:
-            row = running.fuse(tick)
+            row = running.fuse(tick.first(self._intake.body_sensors))
             if rows and (running.valid != valid or running.observed != observed):
-                outputs += _estimates(rows, valid, observed)
+                outputs += _estimates(rows, valid, observed, self._lone)
                 rows = []
             rows.append(row)
             valid, observed = running.valid, running.observed
-        return [*outputs, *_estimates(rows, valid, observed), *self._picture(running, rows[-1])] if rows else []
+            if self._lone is not None:
+                self._lone.take(tick, row.position[TILT], row.position[OBLIQUITY])
+        if not rows:
+            return []
+        return [*outputs, *_estimates(rows, valid, observed, self._lone), *self._picture(running, rows[-1])]
 
     def _picture(self, running: LowerBodyFilter, row: Row) -> list[Output]:
         """The picture of the newest row, when its time has come. None while catching up: nobody could watch it."""
@@ -157,6 +153,7 @@ class EstimationNode:
         assert self._calibrated is not None
         waiting = nobody | ~self._calibrated.alignment.aligned
         statuses = sensor_statuses(self._intake.sensors, self._intake.checks, row.captured_ns, refused, waiting)
+        statuses += unused_statuses(self._intake.unused)
         pose = estimated_pose(row, running.model, running.ekf.x[0], running.valid, running.unseen, statuses)
         return [Output(LIVE_POSE, row.captured_ns, pose)]
 
@@ -174,6 +171,7 @@ class EstimationNode:
             "calibrator": self._calibrator.snapshot(),
             "calibrated": None if self._calibrated is None else pack_calibrated(self._calibrated),
             "filter": None if self._filter is None else self._filter.snapshot(),
+            "lone": None if self._lone is None else self._lone.snapshot(),
             "next_live_ns": self._next_live_ns,
         }
 
@@ -181,18 +179,24 @@ class EstimationNode:
         """Inverse of `snapshot`, for a node built from the same description and parameters."""
         self._intake.restore(state["intake"])
         self._calibrator.restore(state["calibrator"])
-        self._calibrated, self._filter = None, None
+        self._calibrated, self._filter, self._lone = None, None, None
         if state["calibrated"] is not None:
             self._calibrated = unpack_calibrated(state["calibrated"])
             self._filter = self._new_filter(self._calibrated)
             self._filter.restore(state["filter"])
+            self._lone = self._new_lone(self._calibrated)
+            if self._lone is not None:
+                self._lone.restore(state["lone"])
         self._next_live_ns = state["next_live_ns"]
 
 
-def _estimates(rows: list[Row], valid: list[bool], observed: list[Segment]) -> list[Output]:
+def _estimates(rows: list[Row], valid: list[bool], observed: list[Segment], lone: LoneSegments | None) -> list[Output]:
     newest_ns = rows[-1].captured_ns
     joints = _joint_state(rows, valid, observed)
-    return [Output(JOINT_STATE, newest_ns, joints), Output(RHYTHM, newest_ns, _rhythm(rows))]
+    outputs = [Output(JOINT_STATE, newest_ns, joints), Output(RHYTHM, newest_ns, _rhythm(rows))]
+    if lone is not None:
+        outputs.append(Output(SEGMENT_MOTION, newest_ns, lone.collect(joints.captured_ns)))
+    return outputs
 
 
 def _joint_state(rows: list[Row], valid: list[bool], observed: list[Segment]) -> JointState:

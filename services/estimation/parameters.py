@@ -106,6 +106,15 @@ that the paper names beside it. Why ours differs is said at each option."""
 
 
 @dataclass(frozen=True)
+class SegmentMotionParameters:
+    """How the vertical of a foot is followed."""
+
+    tilt_time: float = 2.4  # s in which the specific force corrects the gyroscope, as in the filter of the body
+    gravity: float = 9.81  # m/s^2
+    longest_step_s: float = 0.25  # s between samples; after more the foot is taken to be flat
+
+
+@dataclass(frozen=True)
 class EstimationParameters:
     """All of them."""
 
@@ -114,6 +123,7 @@ class EstimationParameters:
     alignment: AlignmentParameters = field(default_factory=AlignmentParameters)
     walking: WalkingParameters = field(default_factory=WalkingParameters)
     filter: FilterParameters = field(default_factory=FilterParameters)
+    segment_motion: SegmentMotionParameters = field(default_factory=SegmentMotionParameters)
     lateness_s: float = 0.04  # s of captured time that one hub may lag behind another before it is not waited for
     same_tick_s: float = 0.0005  # s, samples closer than this are fused at the time of the earliest
     before_walking_s: float = (

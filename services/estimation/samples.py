@@ -37,6 +37,12 @@ class Tick(NamedTuple):
     samples: Array
     fresh: NDArray[np.bool_]
 
+    def first(self, count: int) -> "Tick":
+        """The same of the first sensors only."""
+        if count == len(self.fresh):
+            return self
+        return Tick(self.captured_ns, self.samples[:count], self.fresh[:count])
+
 
 @dataclass(frozen=True)
 class TickBatch:

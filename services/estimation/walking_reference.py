@@ -26,6 +26,7 @@ Flags = NDArray[np.bool_]
 
 SHANKS = (Segment.SHANK_RIGHT, Segment.SHANK_LEFT)
 THIGHS = (Segment.THIGH_RIGHT, Segment.THIGH_LEFT)
+FEET = (Segment.FOOT_RIGHT, Segment.FOOT_LEFT)
 RIGHT = np.array([0.0, 0.0, 1.0])
 
 
@@ -90,8 +91,8 @@ def lean(alignment: Alignment, sensors: Sequence[SensorDescription], walking: Wa
 def _strides(
     sensors: Sequence[SensorDescription], samples: Array, fresh: Flags, walking: WalkingParameters
 ) -> list[Span]:
-    """From swing to swing of the leg sensor that shows most of them; shanks before thighs."""
-    for segments in (SHANKS, THIGHS):
+    """From swing to swing of the leg sensor that shows most of them; shanks before thighs before feet."""
+    for segments in (SHANKS, THIGHS, FEET):
         found = [
             _swings(samples[:, s], fresh[:, s], sensor.rate_hz, walking)
             for s, sensor in enumerate(sensors)
@@ -104,7 +105,10 @@ def _strides(
 
 
 def _swings(samples: Array, fresh: Flags, rate_hz: float, walking: WalkingParameters) -> list[int]:
-    """Ticks at which a leg sensor turns fastest, once a stride. Swing is faster than stance: third moment > 0."""
+    """Ticks at which a leg sensor turns fastest, once a stride. That turn is brief: third moment > 0.
+
+    It is the forward swing of a shank and of a thigh, and the lifting of a foot's heel.
+    """
     rows = np.flatnonzero(fresh)
     if len(rows) < rate_hz * walking.shortest_stride_s:
         return []

@@ -58,6 +58,7 @@ export const SENSOR_WORDS = {
   missing: { word: "Lost", tone: "lost" },
   stuck: { word: "Check sensor – it stands still", tone: "check" },
   rejected: { word: "Check sensor – readings refused", tone: "check" },
+  unused: { word: "Not used", tone: "done" },
 };
 
 const ORDER = { lost: 0, check: 1, wait: 2, good: 3, done: 4 };

@@ -1,0 +1,40 @@
+"""What tells the gait events of a leg, given the segments that wear a sensor: the best there is."""
+
+from collections.abc import Iterable, Set
+
+from schemas.session import HubDescription
+from schemas.vocabulary import EventSource, Segment, Side
+
+
+def worn_segments(hubs: Iterable[HubDescription]) -> frozenset[Segment]:
+    """All segments with a sensor."""
+    return frozenset(sensor.segment for hub in hubs for sensor in hub.sensors)
+
+
+def event_source(worn: Set[Segment], side: Side) -> EventSource:
+    """The best source of one leg's events.
+
+    The whole leg times them by the ankle, a shank or a foot by its own rotation, the lower back by how the trunk is
+    caught at each contact. What is worn decides, not what speaks at the moment: each source is late or early by an
+    amount of its own, and a stride timed by two of them would be wrong by the difference.
+    """
+    if {Segment.PELVIS, Segment(f"thigh_{side}"), Segment(f"shank_{side}")} <= worn:
+        return EventSource.FULL_LEG
+    if Segment(f"shank_{side}") in worn:
+        return EventSource.SHANK
+    if Segment(f"foot_{side}") in worn:
+        return EventSource.FOOT
+    return EventSource.LOWER_BACK if Segment.PELVIS in worn else EventSource.NOTHING
+
+
+def event_sources(worn: Set[Segment]) -> dict[Side, EventSource]:
+    """The same for both legs."""
+    return {side: event_source(worn, side) for side in Side}
+
+
+def lone_segments(worn: Set[Segment]) -> tuple[Segment, ...]:
+    """Segments whose own motion tells events: feet that are a leg's best source, the pelvis where it is."""
+    sources = event_sources(worn)
+    feet = [Segment(f"foot_{side}") for side, source in sources.items() if source is EventSource.FOOT]
+    back = [Segment.PELVIS] if EventSource.LOWER_BACK in sources.values() else []
+    return (*back, *feet)
