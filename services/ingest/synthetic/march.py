@@ -10,7 +10,7 @@ import math
 
 import numpy as np
 
-from services.ingest.synthetic.curves import JOINT_CURVES, FourierCurve, GaitCurves, series_through
+from services.ingest.synthetic.curves import JOINT_CURVES, GaitCurves, series_through
 from services.ingest.synthetic.gait import BALL_FROM_ANKLE, Gait
 from services.ingest.synthetic.jets import Array, Jet
 from services.ingest.synthetic.parameters import MarchParameters
@@ -30,16 +30,10 @@ SIDEWAYS = 0.5
 """Share of a walk's movement in the other degrees of freedom."""
 
 _DRAWN_LIFT = math.radians(50.0)
-_KNOTS_PER_CENT_DEG: dict[str, list[tuple[float, float]]] = {
-    "hip_flexion": [
-        (0, 14), (6, 8), (12, 3), (20, 1.5), (31, 1), (42, 1.5), (50, 3), (56, 8), (62, 14), (71, 36), (81, 50),
-        (91, 36),
-    ],
-    "knee_flexion": [
-        (0, 30), (6, 16), (12, 6), (20, 3), (31, 2), (42, 3), (50, 6), (56, 16), (62, 30), (71, 62), (81, 78),
-        (91, 62),
-    ],
-}  # fmt: skip
+_STANCE_KNEE_DEG = ((0, 30), (6, 16), (12, 6), (20, 3), (31, 2), (42, 3), (50, 6), (56, 16), (62, 30))
+"""Per cent of the cycle, deg. The hip follows from it: the pelvis stays over the ball of the foot."""
+_SWING_DEG = ((71, 36, 62), (81, 50, 78), (91, 36, 62))
+"""Per cent of the cycle, deg of the hip, deg of the knee."""
 _TOES_HANG_DEG = ((71.0, -30.0), (81.0, -33.0), (91.0, -30.0))
 _ON_THE_GROUND = np.array([0, 3, 6, 9, 12, 16, 22, 31, 40, 46, 50, 53, 56, 59, 62]) / 100
 """Phases of the stance at which the foot's pitch is known."""
@@ -48,16 +42,34 @@ _ON_THE_GROUND = np.array([0, 3, 6, 9, 12, 16, 22, 31, 40, 46, 50, 53, 56, 59, 6
 def marching_curves(lift: float, tuck: float, thigh_length: float, shank_length: float) -> GaitCurves:
     """Curves of a person who lifts the thighs by `lift` rad and flexes the knees `tuck` times as much as drawn."""
     share = lift / _DRAWN_LIFT
-    joints: dict[str, FourierCurve] = {name: curve.scaled(SIDEWAYS) for name, curve in JOINT_CURVES.items()}
-    hip = series_through(_KNOTS_PER_CENT_DEG["hip_flexion"]).scaled(share)
-    knee = series_through(_KNOTS_PER_CENT_DEG["knee_flexion"]).scaled(share * tuck)
-    joints["hip_flexion"], joints["knee_flexion"] = hip, knee
+    stance = [(float(at), share * deg) for at, deg in _STANCE_KNEE_DEG]
+    upright = np.degrees(_hip_over_the_ball(np.radians([deg for _, deg in stance]), thigh_length, shank_length))
+    hips = [(at, deg) for (at, _), deg in zip(stance, upright.tolist(), strict=True)]
+    hip = series_through([*hips, *((at, share * deg) for at, deg, _ in _SWING_DEG)])
+    knee = series_through([*stance, *((at, share * tuck * deg) for at, _, deg in _SWING_DEG)])
     hip_angle, knee_angle = hip(_ON_THE_GROUND)[0], knee(_ON_THE_GROUND)[0]
     leg = thigh_length * np.cos(hip_angle) + shank_length * np.cos(knee_angle - hip_angle)
     pitch = np.degrees(_pitch_on_the_ball(thigh_length + shank_length - leg))
     hang = [(per_cent, min(deg, pitch[0], pitch[-1])) for per_cent, deg in _TOES_HANG_DEG]
     foot = series_through([*zip((100 * _ON_THE_GROUND).tolist(), pitch.tolist(), strict=True), *hang])
-    return GaitCurves(joints, foot, _always_on_the_ball)
+    sideways = {name: curve.scaled(SIDEWAYS) for name, curve in JOINT_CURVES.items()}
+    return GaitCurves({**sideways, "hip_flexion": hip, "knee_flexion": knee}, foot, _always_on_the_ball)
+
+
+def _hip_over_the_ball(knee: Array, thigh: float, shank: float) -> Array:
+    """Hip flexion, rad, at which the ball of the foot is as far ahead of the hip as in standing.
+
+    The ankle is ahead of the hip by thigh sin h - shank sin(knee - h) = r sin(h - a), below it by r cos(h - a), and
+    has to be ahead by what the ball loses to the heel's rise.
+    """
+    ahead, below = thigh + shank * np.cos(knee), shank * np.sin(knee)
+    r, a = np.hypot(ahead, below), np.arctan2(below, ahead)
+    lean = np.zeros_like(knee)
+    for _ in range(5):
+        pitch = _pitch_on_the_ball(thigh + shank - r * np.cos(lean))
+        lost = BALL_FROM_ANKLE[0] * (1 - np.cos(pitch)) - BALL_FROM_ANKLE[1] * np.sin(-pitch)
+        lean = np.arcsin(np.clip(lost / r, -1.0, 1.0))
+    return np.asarray(a + lean)
 
 
 def _pitch_on_the_ball(shortening: Array) -> Array:
