@@ -80,22 +80,23 @@ def gait_motion(seed: int, scenario: Scenario, shapes: StrideShapes, duration_s:
     time_s = np.arange(int(duration_s / INTERVAL_S), dtype=np.float64) * INTERVAL_S
     cadence_hz = rng.uniform(0.4, 1.1)
     variability = rng.uniform(0.02, 0.05)
-    leg_scale = _leg_scale(rng)
+    scale = leg_scale(rng)
     nominal_hz, moving, event_s = _plan(rng, scenario, cadence_hz, time_s)
     wander = np.sin(2.0 * np.pi * time_s / rng.uniform(15.0, 40.0) + rng.uniform(0.0, 6.28))
     if scenario != "metro":
         nominal_hz *= 1.0 + 0.03 * wander
     pace = 1.0 + variability * rng.standard_normal(CYCLES_DRAWN)
-    cycles = _draw_cycles(rng, shapes, variability, leg_scale)
-    turns, frequency_hz = _walk(rng, nominal_hz, pace, moving)
-    angle = _play(turns, cycles) * moving[:, None]
+    cycles = draw_cycles(rng, shapes, variability, scale)
+    turns, frequency_hz = walk_cycles(rng, nominal_hz, pace, moving)
+    angle = play_cycles(turns, cycles) * moving[:, None]
     velocity = np.gradient(angle, INTERVAL_S, axis=0)
     measured = velocity + NOISE_GAIT * rng.standard_normal(velocity.shape)
     guess = 2.0 * np.pi * cadence_hz * (1.0 + rng.uniform(-0.5, 0.5))
     return Motion(velocity, measured, 2.0 * np.pi * turns, 2.0 * np.pi * frequency_hz, float(guess), event_s)
 
 
-def _leg_scale(rng: np.random.Generator) -> FloatArray:
+def leg_scale(rng: np.random.Generator) -> FloatArray:
+    """Amplitude of each joint, (4,): for every other person one leg is scaled to 0.4-0.8."""
     scale = np.ones(4)
     if rng.random() < 0.5:
         side = int(rng.integers(0, 2))
@@ -124,7 +125,7 @@ def _plan(
     return cadence, moving, None
 
 
-def _draw_cycles(
+def draw_cycles(
     rng: np.random.Generator, shapes: StrideShapes, variability: float, leg_scale: FloatArray
 ) -> NDArray[np.complex128]:
     """Coefficients (cycle, joint, harmonic from 0) of each cycle, rad."""
@@ -136,7 +137,7 @@ def _draw_cycles(
     return np.asarray(cycles)
 
 
-def _walk(
+def walk_cycles(
     rng: np.random.Generator, nominal_hz: FloatArray, pace: FloatArray, moving: FloatArray
 ) -> tuple[FloatArray, FloatArray]:
     """Phase (turns) and frequency (Hz) of a walk whose cycles have their own pace, joined by smoothsteps.
@@ -159,7 +160,7 @@ def _walk(
     return turns, frequency_hz
 
 
-def _play(turns: FloatArray, cycles: NDArray[np.complex128]) -> FloatArray:
+def play_cycles(turns: FloatArray, cycles: NDArray[np.complex128]) -> FloatArray:
     """Angles (n, joint), rad, of the cycles at these phases."""
     cycle = turns.astype(int)
     fraction = turns - cycle

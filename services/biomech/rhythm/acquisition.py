@@ -8,6 +8,7 @@ from services.biomech.rhythm.compiled import compiled
 from services.biomech.rhythm.correlator import candidate_stands, find_period, follow_candidate, restart_search
 from services.biomech.rhythm.detection import moves, restart_energies, restart_filters, set_walking_energy
 from services.biomech.rhythm.memory import LOCKED, SEARCHING, STANDING, Bench, Memory, Record
+from services.biomech.rhythm.recall import find_match, is_recognised
 from services.biomech.rhythm.waveform import best_alignment, project, rotate, usable_harmonics
 
 
@@ -20,10 +21,18 @@ def search(memory: Memory, bench: Bench, dt_s: float) -> None:
     follow_candidate(loop, period_s, correlation, spacing_s, parameters)
     stands = candidate_stands(loop, parameters)
     if loop.stage == SEARCHING:
-        if stands and moves(memory.channels, parameters.smallest_rms):
+        if not moves(memory.channels, parameters.smallest_rms):
+            return
+        if stands:
             seed(memory, bench, period_s, dt_s)
             loop.stage = LOCKED
             set_walking_energy(memory.channels, True)
+        elif loop.known_frequency > 0.0 and loop.recall_spent == 0.0:
+            recognise(memory, bench, dt_s)
+        return
+    if loop.is_provisional > 0.0:
+        if stands:
+            judge_recognition(memory, bench, period_s, dt_s)
         return
     if correlation <= parameters.correlation_to_accept:
         return
@@ -75,6 +84,34 @@ def seed(memory: Memory, bench: Bench, period_s: float, dt_s: float) -> None:
 
 
 @compiled
+def recognise(memory: Memory, bench: Bench, dt_s: float) -> None:
+    """Lock provisionally when the motion is the known waveform; the phase goes forward to where it is recognised."""
+    loop = memory.loop[0]
+    frequency, phase, fit, share = find_match(memory, bench, dt_s)
+    if not is_recognised(loop, frequency, phase, fit, share, bench.parameters[0]):
+        return
+    memory.waveform[:] = memory.known * fit
+    turn = phase - loop.phase
+    loop.phase += turn - 2.0 * pi * np.floor(turn / (2.0 * pi))
+    begin_tracking(memory, frequency)
+    loop.quality = share
+    loop.residual_power = 1.0 - share
+    loop.is_provisional = 1.0
+    loop.stage = LOCKED
+    set_walking_energy(memory.channels, True)
+
+
+@compiled
+def judge_recognition(memory: Memory, bench: Bench, period_s: float, dt_s: float) -> None:
+    """The correlation would lock now: it confirms a provisional lock, or puts its own in its place."""
+    loop, parameters = memory.loop[0], bench.parameters[0]
+    if not follows(loop, period_s, parameters.slip_tolerance) or loop.quality < parameters.known_quality:
+        seed(memory, bench, period_s, dt_s)
+    loop.is_provisional = 0.0
+    loop.since_lock_s = 0.0
+
+
+@compiled
 def begin_tracking(memory: Memory, frequency: float) -> None:
     """Start the loop's averages from what the correlation says."""
     loop = memory.loop[0]
@@ -89,9 +126,20 @@ def begin_tracking(memory: Memory, frequency: float) -> None:
 
 @compiled
 def keep_template(memory: Memory) -> None:
-    """Remember the waveform: it holds the phase reference for the next seed."""
+    """Remember the waveform: it holds the phase reference for the next seed. A provisional one is not worth it."""
+    if memory.loop[0].is_provisional > 0.0:
+        return
     memory.template[:] = memory.waveform
     memory.loop[0].has_template = 1.0
+
+
+@compiled
+def keep_known(memory: Memory) -> None:
+    """Remember the waveform to recognise the motion by after the next stop."""
+    loop = memory.loop[0]
+    memory.known[:] = memory.waveform
+    loop.known_frequency = loop.frequency_mean
+    loop.since_known_s = 0.0
 
 
 @compiled
@@ -101,6 +149,7 @@ def give_up_lock(memory: Memory) -> None:
     loop.stage = SEARCHING
     loop.quality = 0.0
     loop.resting_s = 0.0
+    loop.is_provisional = 0.0
     set_walking_energy(memory.channels, False)
 
 
@@ -113,12 +162,25 @@ def resume_search(memory: Memory, credit_s: float) -> None:
 
 
 @compiled
+def lose_lock(memory: Memory) -> None:
+    """The waveform no longer explains the motion: search anew, and trust no known waveform until the next start."""
+    if memory.loop[0].is_provisional > 0.0:
+        # The search has gone on beside a provisional lock: it goes on as if that had not been.
+        give_up_lock(memory)
+    else:
+        keep_template(memory)
+        resume_search(memory, 0.0)
+    memory.loop[0].recall_spent = 1.0
+
+
+@compiled
 def stand_still(memory: Memory) -> None:
     """Freeze phase and waveform until the rest ends."""
     keep_template(memory)
     memory.loop[0].stage = STANDING
     memory.loop[0].quality = 0.0
     memory.loop[0].candidate_period_s = 0.0
+    memory.loop[0].is_provisional = 0.0
 
 
 @compiled

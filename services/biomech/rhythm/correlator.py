@@ -170,3 +170,5 @@ def restart_search(memory: Memory, credit_s: float) -> None:
     loop.elapsed_s = credit_s
     loop.candidate_s = 0.0
     loop.correlation = 0.0
+    loop.recall_spent = 0.0
+    loop.match_frequency = 0.0

@@ -16,6 +16,9 @@ Record = Any
 SEARCHING, LOCKED, STANDING = 0.0, 1.0, 2.0
 """Values of `stage`."""
 
+PHASES = 64
+"""Phases per turn at which a known waveform is compared with the motion."""
+
 
 def _record_type(*names: str) -> np.dtype[np.void]:
     return np.dtype([(name, np.float64) for name in names])
@@ -42,6 +45,13 @@ LOOP = _record_type(
     "resting_s",
     "unused_s",  # time of samples that could not be used
     "has_template",
+    "known_frequency",  # rad/s of the known waveform; 0 = nothing is known
+    "is_provisional",  # the lock comes from the known waveform and is not confirmed by the correlation
+    "recall_spent",  # a recognition has failed since the search began
+    "match_frequency",  # rad/s of the last believable match; 0 = none
+    "match_phase",  # rad, at match_s
+    "match_s",  # s on the grid
+    "since_known_s",  # since the waveform was last kept as known
 )
 
 CHANNEL = _record_type(
@@ -70,6 +80,7 @@ class Memory(NamedTuple):
     channels: NDArray[np.void]  # (C,) CHANNEL
     waveform: FloatArray  # (2, C, N) rad/s: cosine and sine coefficients
     template: FloatArray  # (2, C, N) rad/s: the waveform that holds the phase reference
+    known: FloatArray  # (2, C, N) rad/s: a waveform that was right, to recognise the motion by
     products: FloatArray  # (C, L) (rad/s)^2: running sum of u(t) u(t - lag)
     squares: FloatArray  # (C, L) (rad/s)^2: running sum of u(t)^2 + u(t - lag)^2
     raw_history: FloatArray  # (C, 2H) rad/s: cell means
@@ -84,6 +95,7 @@ class Bench(NamedTuple):
     forgetting: FloatArray  # (L,) factor of the running sums per grid point
     correlation: FloatArray  # (L,) scratch
     harmonic: FloatArray  # (2, N) scratch: cos k phase, sin k phase
+    turns: FloatArray  # (2, PHASES, N) cos and sin of k times each phase of a turn
     jerk: FloatArray  # (C,) rad/s^3, result
     reading: FloatArray  # (4,) phase, frequency, quality, locked, result
 
@@ -107,6 +119,7 @@ def allocate_memory(channels: int, parameters: TrustedParameters) -> Memory:
         channels=np.zeros(channels, CHANNEL),
         waveform=np.zeros((2, channels, parameters.harmonics)),
         template=np.zeros((2, channels, parameters.harmonics)),
+        known=np.zeros((2, channels, parameters.harmonics)),
         products=np.zeros((channels, lags)),
         squares=np.zeros((channels, lags)),
         raw_history=np.zeros((channels, 2 * history)),
@@ -117,12 +130,14 @@ def allocate_memory(channels: int, parameters: TrustedParameters) -> Memory:
 def prepare_bench(channels: int, parameters: TrustedParameters) -> Bench:
     """Derive what the parameters fix."""
     lags = np.maximum(np.arange(lag_count(parameters)), 1)
+    angles = np.outer(np.arange(PHASES) * (2.0 * np.pi / PHASES), np.arange(1, parameters.harmonics + 1))
     return Bench(
         parameters=np.array([astuple(parameters)], PARAMETERS),
         velocity=np.zeros(channels),
         forgetting=np.exp(-1.0 / (parameters.memory_lags * lags)),
         correlation=np.zeros(lags.size),
         harmonic=np.zeros((2, parameters.harmonics)),
+        turns=np.stack([np.cos(angles), np.sin(angles)]),
         jerk=np.zeros(channels),
         reading=np.zeros(4),
     )

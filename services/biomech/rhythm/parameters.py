@@ -128,6 +128,28 @@ class TrustedParameters:
     restart_credit_s: float = 0.3
     """s of motion that went by before a restart is noticed. [B]"""
 
+    # Recognition of a known waveform
+    recall_periods: float = 0.75
+    """Periods of motion compared with the known waveform. [B]"""
+    recall_range: float = 0.25
+    """Frequencies tried: within this share of the known one. The edges are not believed. [B]"""
+    recall_share: float = 0.8
+    """Explained share that is believed. [B]"""
+    recall_margin: float = 0.15
+    """By how much every phase that is 60 degrees or more away must explain less. [B]"""
+    recall_amplitude: float = 2.5
+    """Largest ratio of amplitudes, either way. [B]"""
+    recall_tolerance: float = 0.35
+    """rad. How far two matches in succession may contradict each other. [B]"""
+    recall_quality_periods: float = 0.5
+    """Averaging of the quality while the lock is provisional, and its grace, in periods. [B]"""
+    recall_quality: float = 0.6
+    """Quality below which a provisional lock ends. [B]"""
+    known_quality: float = 0.75
+    """Quality from which on the waveform is kept as known, once a period. [B]"""
+    known_periods: float = 3.0
+    """Periods in confirmed lock before it is. [B]"""
+
     # Jerk
     quality_for_jerk: float = 0.5
     """Quality at which the jerk begins to open; fully open at +0.35. [B]"""

@@ -52,7 +52,8 @@ def follow_quality(loop: Record, channels: Record, dt_s: float, parameters: Reco
         weight = 1.0 / (channel.energy + ENERGY_FLOOR)
         residual += weight * channel.error_filtered * channel.error_filtered
         signal += weight * channel.filtered * channel.filtered
-    gain = dt_s * loop.frequency / (2.0 * pi * parameters.quality_periods)
+    periods = parameters.recall_quality_periods if loop.is_provisional > 0.0 else parameters.quality_periods
+    gain = dt_s * loop.frequency / (2.0 * pi * periods)
     loop.residual_power += gain * (residual / channels.size - loop.residual_power)
     loop.signal_power += gain * (signal / channels.size - loop.signal_power)
     loop.quality = 1.0 - loop.residual_power / (loop.signal_power + 1e-9)
@@ -128,11 +129,26 @@ def learn_waveform(
 @compiled
 def is_lost(loop: Record, parameters: Record) -> bool:
     """Whether the lock is to be given up; never within the grace after a seed."""
+    if loop.is_provisional > 0.0:
+        grace = loop.since_lock_s * loop.frequency <= 2.0 * pi * parameters.recall_quality_periods
+        return bool(not grace and loop.quality < parameters.recall_quality)
     if loop.since_lock_s * loop.frequency <= 2.0 * pi * parameters.quality_periods:
         return False
     unconfirmed = loop.correlation <= parameters.correlation_to_accept
     return bool(
         loop.quality < parameters.quality_to_unlock or (loop.quality < parameters.quality_to_confirm and unconfirmed)
+    )
+
+
+@compiled
+def is_worth_knowing(loop: Record, parameters: Record) -> bool:
+    """Whether the waveform has been right for long enough to recognise the motion by, and a period has passed."""
+    period_s = 2.0 * pi / loop.frequency
+    return bool(
+        loop.since_known_s >= period_s
+        and loop.is_provisional == 0.0
+        and loop.since_lock_s >= parameters.known_periods * period_s
+        and loop.quality >= parameters.known_quality
     )
 
 

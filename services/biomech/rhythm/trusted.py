@@ -8,8 +8,9 @@ one sample, in the order of `advance`:
 2. detection filter, energies, rest              detection.py
 3. correlation on an even 25 Hz grid, period     correlator.py
 4. lock, seed of the waveform, stop, restart     acquisition.py, waveform.py
-5. phase loop, coefficients, lock quality        phase_loop.py
-6. gated jerk                                    this file
+5. recognition of a waveform known already       recall.py
+6. phase loop, coefficients, lock quality        phase_loop.py
+7. gated jerk                                    this file
 """
 
 from math import pi
@@ -17,7 +18,14 @@ from math import pi
 import numpy as np
 from numpy.typing import NDArray
 
-from services.biomech.rhythm.acquisition import bridge_gap, keep_template, resume_search, search, stand_still
+from services.biomech.rhythm.acquisition import (
+    bridge_gap,
+    keep_known,
+    lose_lock,
+    resume_search,
+    search,
+    stand_still,
+)
 from services.biomech.rhythm.compiled import compiled
 from services.biomech.rhythm.correlator import ends_cell, fill_grid
 from services.biomech.rhythm.detection import (
@@ -45,6 +53,7 @@ from services.biomech.rhythm.phase_loop import (
     correct_phase,
     follow_quality,
     is_lost,
+    is_worth_knowing,
     jerk_gate,
     learn_waveform,
     phase_error,
@@ -92,9 +101,10 @@ def advance(memory: Memory, bench: Bench, velocity: FloatArray, dt_s: float) -> 
     if loop.stage == LOCKED:
         waveform, harmonic = memory.waveform, bench.harmonic
         track(loop, channels, waveform, harmonic, bench.velocity, interval_s, filter_gain, parameters)
+        if is_worth_knowing(loop, parameters):
+            keep_known(memory)
         if is_lost(loop, parameters):
-            keep_template(memory)
-            resume_search(memory, 0.0)
+            lose_lock(memory)
         else:
             expect_jerk(loop, waveform, harmonic, interval_s, parameters, bench.jerk)
 
@@ -134,6 +144,7 @@ def track(
 ) -> None:
     """Compare the sample with the waveform at the phase predicted for it; judge, learn, correct."""
     loop.since_lock_s += dt_s
+    loop.since_known_s += dt_s
     harmonics = usable_harmonics(loop.frequency, waveform.shape[2], parameters.highest_harmonic_hz)
     fill_harmonics(loop.phase, harmonic)
     error = phase_error(channels, velocity, waveform, harmonic, filter_gain)
@@ -184,7 +195,8 @@ def read(loop: Record, reading: FloatArray) -> None:
 class TrustedRhythm:
     """Rhythm of joints that share one stride, with a lock that can be trusted (see the head of this file).
 
-    Sample intervals may vary; gaps above `gap_s` are bridged or end the lock. Needs 2.5 periods to lock.
+    Sample intervals may vary; gaps above `gap_s` are bridged or end the lock. Needs 2.5 periods to lock, or less than
+    one when it knows the waveform: from `start_from`, or from before a stop.
     """
 
     def __init__(self, channels: int, parameters: TrustedParameters = TrustedParameters()) -> None:  # noqa: B008 (frozen)
@@ -203,6 +215,22 @@ class TrustedRhythm:
         readings = np.zeros((velocity.shape[0], 4))
         advance_many(self._memory, self._bench, np.ascontiguousarray(velocity), dt_s, readings)
         return readings
+
+    def start_from(self, waveform: NDArray[np.float64], frequency: float) -> None:
+        """Know a waveform before the first sample.
+
+        Args:
+            waveform: rad/s, shape (2, channels, any number of harmonics): cosine and sine coefficients.
+            frequency: rad/s of the stride it was learned at.
+
+        Its phase is the reference from here on. It has to be recognised before it is believed.
+        """
+        harmonics = min(waveform.shape[2], self._memory.known.shape[2])
+        self._memory.known[:] = 0.0
+        self._memory.known[:, :, :harmonics] = waveform[:, :, :harmonics]
+        self._memory.template[:] = self._memory.known
+        loop = self._memory.loop[0]
+        loop["has_template"], loop["known_frequency"] = 1.0, frequency
 
     def snapshot(self) -> State:
         """Everything that changes, as JSON values."""
