@@ -11,13 +11,16 @@ from typing import Literal
 import numpy as np
 from numpy.typing import NDArray
 
-from schemas.vocabulary import Segment
+from schemas.vocabulary import LOWER_BODY, Segment
 from services.biomech.kernels.bundle import advance, tie
 from services.biomech.kernels.fixed import LANES, width_of
 from services.biomech.kernels.tables import Body, Columns, Motion, Noise, Options, Sensors, Update, empty_motion
 from services.biomech.lower_body import LowerBodyModel, SensorMount
 
 Array = NDArray[np.float64]
+
+FASTEST_JOINT = 100.0
+"""rad/s. The difference of two worn gyroscopes at the end of their range (35 rad/s) stays below."""
 
 YAW_MODES = {"none": 0, "world": 1, "relative": 2}
 
@@ -79,7 +82,8 @@ class LowerBodyEkf:
         n, S = len(model.dofs), len(mounts)
         N = 3 * (n - model.first_rotation) + model.first_rotation
         self.x = np.zeros((3, n))
-        width = width_of(N)
+        # All models share one row length: for each the compiler would need another minute.
+        width = width_of(max(N, 3 * len(LOWER_BODY)))
         M = LANES * len(width)
         self.padded_covariance = np.zeros((N, M))
         self.P = self.padded_covariance[:, :N]
@@ -111,6 +115,18 @@ class LowerBodyEkf:
         """After a time without samples: keep the pose, forget how it moved and how sure it was."""
         self.x[1:] = 0.0
         self.P[:] = np.diag(self._start_variance(len(self.P)))
+
+    def is_sound(self) -> bool:
+        """Finite throughout, and no joint faster than anything that moves. Translations drift: no sensor sees them."""
+        rates = self.x[1, self.model.first_rotation :]
+        finite = np.isfinite(self.x).all() and np.isfinite(self._variances).all()
+        return bool(finite and np.abs(rates).max() < FASTEST_JOINT)
+
+    def start_over(self) -> None:
+        """Upright and at rest, as at the start."""
+        self.x[0] = 0.0
+        self.padded_covariance[:] = 0.0
+        self.settle()
 
     def loosen(self, joints: Sequence[int]) -> None:
         """Make some joints as uncertain as at the start, so that the next samples may move them."""

@@ -70,6 +70,7 @@ class LowerBodyFilter:
         self._driver, self._driver_joints = _driver_of(description.estimator, self.model, self._rhythm)
         self._jerk = np.zeros(len(self.model.dofs))
         self._starts_moving = calibrated.from_walking
+        self._may_diverge = parameters.measurement.gyro_sees_position or parameters.measurement.accel_sees_motion
         self._ahead = _ahead(parameters.sample_delay / max((sensor.rate_hz for sensor in sensors), default=100.0))
         self._last_ns: int | None = None
         self._heard_ns: list[int] = []
@@ -142,9 +143,18 @@ class LowerBodyFilter:
         self._judge(tick.captured_ns)
         step_s = dt_s if dt_s <= self.parameters.longest_step_s else 0.0
         self.ekf.advance(step_s, tick.samples, tick.fresh & self._aligned, self._jerk, self._rest)
+        if self._may_diverge and not self.ekf.is_sound():
+            self._start_over(tick.captured_ns)
         reading = self._follow_rhythm(dt_s)
         self._last_ns = tick.captured_ns
         return self._row(tick.captured_ns, reading)
+
+    def _start_over(self, now_ns: int) -> None:
+        """The estimate is lost: begin again from upright, in doubt like after a gap."""
+        self.ekf.start_over()
+        self._jerk[:] = 0.0
+        self._returned_ns = dict.fromkeys(SEGMENTS, now_ns)
+        self._judge(now_ns)
 
     def _rest_without(self, unseen: frozenset[Segment]) -> Array:
         """Variances of the pull to zero: soft knees always, and every joint below a segment that is not seen.

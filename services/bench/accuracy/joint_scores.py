@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from schemas.kinematics import JointState
-from schemas.session import SessionDescription
+from schemas.session import SessionDescription, WalkPath
 from schemas.signals import JOINT_STATE
 from schemas.vocabulary import LOWER_BODY
 from services.estimation.node import build
@@ -53,13 +53,14 @@ def estimate_angles(
     estimator: str,
     build_node: Callable[[SessionDescription], Node] = build,
     during_s: tuple[float, float] = (0.0, math.inf),
+    walk_path: WalkPath | None = None,
 ) -> Array:
     """Joint angles (frames, 15) in degrees through ingest and node, NaN where there is none.
 
     For a recording whose sensors share one rate: frame i was captured i / rate after the start. The node is shown
     what was captured `during_s`, from and before.
     """
-    source = open_source(spec, session="accuracy", estimator=estimator)
+    source = open_source(spec, session="accuracy", estimator=estimator, walk_path=walk_path)
     description = source.describe()
     chain = Chain([HostedNode("estimation", description.session, build_node(description))])
     rows: list[tuple[int, list[float]]] = []
