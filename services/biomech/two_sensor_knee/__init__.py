@@ -1,0 +1,1 @@
+"""One knee from two inertial sensors: the published band and self-finding axis, and ours beside each."""

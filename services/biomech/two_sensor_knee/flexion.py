@@ -1,0 +1,169 @@
+"""The angle about the axis, its sign, its zero and its uncertainty."""
+
+from math import atan2, sin, sqrt
+
+from services.biomech.two_sensor_knee.compiled import compiled
+from services.biomech.two_sensor_knee.memory import SHANK, THIGH, Bench, FloatArray, Memory, Record
+from services.biomech.two_sensor_knee.turns import low_pass_gain, wrapped
+
+POSTURE_MEMORY_S = 30.0
+SIGN_WEIGHT_S = 2.0
+SIGN_SPREAD = 0.15
+"""rad. Deviation of the angle below which nothing is said about its sign."""
+
+
+@compiled
+def twist(relative: FloatArray, axes: FloatArray, across: FloatArray) -> float:
+    """Angle about the axis, rad, of R_thigh_from_shank between both `across` directions.
+
+    The twist of the swing-twist decomposition: unlike the first Euler angle it changes by a constant only when
+    either sensor is mounted otherwise. With x = across, y = axis x across of both segments:
+    atan2(y1'Rx2 - x1'Ry2, x1'Rx2 + y1'Ry2).
+    """
+    a1, a2, x1, x2 = axes[THIGH], axes[SHANK], across[THIGH], across[SHANK]
+    y1 = (a1[1] * x1[2] - a1[2] * x1[1], a1[2] * x1[0] - a1[0] * x1[2], a1[0] * x1[1] - a1[1] * x1[0])
+    y2 = (a2[1] * x2[2] - a2[2] * x2[1], a2[2] * x2[0] - a2[0] * x2[2], a2[0] * x2[1] - a2[1] * x2[0])
+    sine, cosine = 0.0, 0.0
+    for i in range(3):
+        x2_i = relative[i, 0] * x2[0] + relative[i, 1] * x2[1] + relative[i, 2] * x2[2]
+        y2_i = relative[i, 0] * y2[0] + relative[i, 1] * y2[1] + relative[i, 2] * y2[2]
+        sine += y1[i] * x2_i - x1[i] * y2_i
+        cosine += x1[i] * x2_i + y1[i] * y2_i
+    return atan2(sine, cosine)
+
+
+@compiled
+def follow_angle(memory: Memory, bench: Bench, dt_s: float) -> None:
+    """Unwrap the angle, settle its sign, and say where its zero is."""
+    knee = memory.knee[0]
+    knee.angle += wrapped(twist(bench.relative, memory.axes, memory.across) - knee.angle)
+    follow_posture(memory, sensor_height(memory, bench.R[THIGH, 1], bench.R[SHANK, 1]), dt_s)
+    settle_sign(memory, bench.parameters[0])
+    if knee.is_zero_set == 0.0 and is_standing(memory, bench.parameters[0]):
+        knee.zero = angle_of_verticals(memory.standing, memory.axes, memory.across)
+
+
+@compiled
+def take_standing(memory: Memory, bench: Bench) -> None:
+    """Remember both verticals of the tallest rest so far; it may come before anything is known of the knee.
+
+    Sitting still comes before standing still, so a later rest that is taller takes the place of the one before.
+    """
+    knee, parameters, levels = memory.knee[0], bench.parameters[0], memory.levels
+    if levels[THIGH].rest_s < parameters.calm_s or levels[SHANK].rest_s < parameters.calm_s:
+        return
+    up_thigh, up_shank = bench.R[THIGH, 1], bench.R[SHANK, 1]
+    height = sensor_height(memory, up_thigh, up_shank)
+    known = sensor_height(memory, memory.standing[THIGH], memory.standing[SHANK])
+    if knee.has_standing == 0.0 or height > known + parameters.taller:
+        knee.has_standing = 1.0
+        for i in range(3):
+            memory.standing[THIGH, i], memory.standing[SHANK, i] = up_thigh[i], up_shank[i]
+
+
+@compiled
+def is_standing(memory: Memory, parameters: Record) -> bool:
+    """Whether the tallest rest was standing: the knee below the thigh's sensor and above the shank's."""
+    if memory.knee[0].has_standing == 0.0:
+        return False
+    for s in range(2):
+        down, length = 0.0, 0.0
+        for i in range(3):
+            down -= memory.standing[s, i] * memory.arms[s, i]
+            length += memory.arms[s, i] ** 2
+        upright = down if s == THIGH else -down
+        if upright < parameters.upright_share * sqrt(length) or length == 0.0:
+            return False
+    return True
+
+
+@compiled
+def angle_of_verticals(up: FloatArray, axes: FloatArray, across: FloatArray) -> float:
+    """Angle about the axis, rad, at which the verticals up (2, 3) of both sensors are one: no heading is needed."""
+    real, imaginary = 1.0, 0.0
+    for s in range(2):
+        a, x = axes[s], across[s]
+        y = (a[1] * x[2] - a[2] * x[1], a[2] * x[0] - a[0] * x[2], a[0] * x[1] - a[1] * x[0])
+        along_x = x[0] * up[s, 0] + x[1] * up[s, 1] + x[2] * up[s, 2]
+        along_y = y[0] * up[s, 0] + y[1] * up[s, 1] + y[2] * up[s, 2]
+        sign = 1.0 if s == THIGH else -1.0
+        real, imaginary = real * along_x - sign * imaginary * along_y, imaginary * along_x + sign * real * along_y
+    return atan2(imaginary, real)
+
+
+@compiled
+def sensor_height(memory: Memory, up_thigh: FloatArray, up_shank: FloatArray) -> float:
+    """Height of the thigh's sensor over the shank's, m: up the shank's arm to the knee, and back down the thigh's."""
+    height = 0.0
+    for i in range(3):
+        height += up_shank[i] * memory.arms[SHANK, i] - up_thigh[i] * memory.arms[THIGH, i]
+    return height
+
+
+@compiled
+def follow_posture(memory: Memory, height: float, dt_s: float) -> None:
+    """Running moments of angle and height, forgotten in half a minute."""
+    posture, angle = memory.posture[0], memory.knee[0].angle
+    keep = 1.0 - low_pass_gain(POSTURE_MEMORY_S, dt_s)
+    posture.weight = keep * posture.weight + dt_s
+    posture.angle = keep * posture.angle + dt_s * angle
+    posture.height = keep * posture.height + dt_s * height
+    posture.angle_height = keep * posture.angle_height + dt_s * angle * height
+    posture.angle2 = keep * posture.angle2 + dt_s * angle * angle
+    posture.height2 = keep * posture.height2 + dt_s * height * height
+
+
+@compiled
+def settle_sign(memory: Memory, parameters: Record) -> None:
+    """Flexion brings the sensors' heights together: turn both axes round when the angle rises with the height."""
+    posture, knee = memory.posture[0], memory.knee[0]
+    if parameters.sign_correlation == 0.0:
+        knee.is_sign_known = 1.0
+        return
+    if posture.weight < SIGN_WEIGHT_S:
+        return
+    angle, height = posture.angle / posture.weight, posture.height / posture.weight
+    angle_variance = posture.angle2 / posture.weight - angle * angle
+    height_variance = posture.height2 / posture.weight - height * height
+    if angle_variance < SIGN_SPREAD**2 or height_variance < 1e-6:
+        return
+    covariance = posture.angle_height / posture.weight - angle * height
+    correlation = covariance / sqrt(angle_variance * height_variance)
+    if correlation > parameters.sign_correlation:
+        memory.axes[:] *= -1.0
+        knee.angle *= -1.0
+        knee.zero *= -1.0
+        posture.angle *= -1.0
+        posture.angle_height *= -1.0
+    if abs(correlation) > parameters.sign_correlation:
+        knee.is_sign_known = 1.0
+
+
+@compiled
+def angle_deviation(memory: Memory, bench: Bench, axis_std: float) -> float:
+    """Standard deviation of the flexion, rad: inclination of both sensors, axis, and heading at an upright axis."""
+    knee, parameters, R, axes = memory.knee[0], bench.parameters[0], bench.R, memory.axes
+    variance = 0.0
+    for s in range(2):
+        variance += parameters.level_std**2
+        variance += parameters.level_start_std**2 / max(memory.levels[s].elapsed_s, 0.1)
+    upright = R[THIGH, 1, 0] * axes[THIGH, 0] + R[THIGH, 1, 1] * axes[THIGH, 1] + R[THIGH, 1, 2] * axes[THIGH, 2]
+    variance += knee.heading_variance * upright**2
+    return sqrt(variance + (axis_std * sin(knee.angle - knee.zero)) ** 2)
+
+
+@compiled
+def turn_from_sensor_axes(axes: FloatArray, across: FloatArray) -> float:
+    """Angle, rad, to be added for the datum of McGrath et al., eq. 2: z = axis, y = axis x (1, 0, 0) in both segments.
+
+    Angle of `across` in the thigh's frame minus that in the shank's. Not a number where an axis is its sensor's x.
+    """
+    # With y = (0, a_z, -a_y) and x = y x a, both scaled by the same 1 / |y|, which the angle does not see.
+    real, imaginary = 1.0, 0.0
+    for s in range(2):
+        ax, ay, az = axes[s, 0], axes[s, 1], axes[s, 2]
+        along_y = az * across[s, 1] - ay * across[s, 2]
+        along_x = (az * az + ay * ay) * across[s, 0] - ax * (ay * across[s, 1] + az * across[s, 2])
+        sign = 1.0 if s == 0 else -1.0
+        real, imaginary = real * along_x - sign * imaginary * along_y, imaginary * along_x + sign * real * along_y
+    return atan2(imaginary, real)

@@ -1,0 +1,224 @@
+"""Knee flexion from two sensors that nobody calibrated: our form of McGrath's self-finding axis.
+
+Steps of one sample, in the order of `advance`:
+
+1. bounds and gaps of the input                      this file
+2. orientation of each sensor, bias, rest            levelling.py
+3. the knee as shared point: heading, arms           joint_centre.py
+4. axis by principal components, with forgetting     hinge_axis.py
+5. heading held by the hinge                         heading.py
+6. angle, sign, zero, uncertainty                    flexion.py
+"""
+
+from enum import StrEnum
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from services.biomech.two_sensor_knee.compiled import compiled
+from services.biomech.two_sensor_knee.flexion import (
+    angle_deviation,
+    follow_angle,
+    is_standing,
+    take_standing,
+    turn_from_sensor_axes,
+)
+from services.biomech.two_sensor_knee.heading import take_joint_heading, tie
+from services.biomech.two_sensor_knee.hinge_axis import axis_deviation, follow_axis
+from services.biomech.two_sensor_knee.joint_centre import follow_joint
+from services.biomech.two_sensor_knee.levelling import follow_level
+from services.biomech.two_sensor_knee.memory import (
+    OUTPUTS,
+    SHANK,
+    THIGH,
+    Bench,
+    FloatArray,
+    Memory,
+    Record,
+    allocate_memory,
+    pack_memory,
+    prepare_bench,
+    unpack_memory,
+)
+from services.biomech.two_sensor_knee.parameters import KneeAxisParameters
+from services.biomech.two_sensor_knee.turns import fill_relative, wrapped
+from services.flow.node import State
+
+
+class Datum(StrEnum):
+    """What 0 means."""
+
+    START = "start"  # the pose in which the axis was first seen
+    STANDING = "standing"  # quiet standing
+    SET = "set"  # the pose that was declared
+
+
+class KneeReading(NamedTuple):
+    """Flexion of one sample, rad and rad/s; positive when the knee bends."""
+
+    flexion: float
+    flexion_std: float
+    is_valid: bool
+    flexion_rate: float
+    axis_std: float  # rad
+    is_sign_known: bool
+    datum: Datum
+
+
+@compiled
+def advance(memory: Memory, bench: Bench, rate: FloatArray, force: FloatArray, dt_s: float) -> None:
+    """Take one sample of both sensors, rate (2, 3) rad/s and force (2, 3) m/s^2; leaves the reading in the bench.
+
+    A sample that is not finite or beyond what a leg can do counts as missing: the reading is not valid and the next
+    interval is longer. Intervals of 0 or less are no time and change nothing.
+    """
+    knee, parameters = memory.knee[0], bench.parameters[0]
+    bench.output[2] = 0.0
+    interval_s = usable_interval(knee, rate, force, dt_s, parameters)
+    if interval_s <= 0.0:
+        return
+    if interval_s > parameters.gap_s:
+        bridge_gap(memory, interval_s, parameters.heading_drift)
+        interval_s = dt_s if dt_s <= parameters.gap_s else parameters.joint_interval_s
+    for s in range(2):
+        follow_level(memory.levels[s], rate[s], force[s], interval_s, parameters, bench.R[s])
+        for i in range(3):
+            bench.rate[s, i] = rate[s, i] - memory.levels[s].bias[i]
+    if knee.has_sample == 0.0:
+        knee.has_sample = 1.0
+        for s in range(2):
+            for i in range(3):
+                memory.rate_before[s, i] = bench.rate[s, i]
+    take_standing(memory, bench)
+    if follow_joint(memory, bench, force, interval_s):
+        take_joint_heading(memory, bench)
+    if knee.is_tied > 0.0:
+        follow_hinge(memory, bench, interval_s)
+
+
+@compiled
+def follow_hinge(memory: Memory, bench: Bench, dt_s: float) -> None:
+    """Axis, heading and angle of the sample, once the headings are tied."""
+    knee, parameters, output = memory.knee[0], bench.parameters[0], bench.output
+    fill_relative(bench.R[THIGH], bench.R[SHANK], knee.heading, bench.relative)
+    follow_axis(memory, bench, dt_s)
+    axis_std = axis_deviation(memory, bench)
+    output[4] = axis_std
+    if knee.moving_s == 0.0:
+        return
+    tie(memory, bench, axis_std, dt_s)
+    fill_relative(bench.R[THIGH], bench.R[SHANK], knee.heading, bench.relative)
+    follow_angle(memory, bench, dt_s)
+    axes, rate = memory.axes, bench.rate
+    output[0] = wrapped(knee.angle - knee.zero)
+    output[1] = angle_deviation(memory, bench, axis_std)
+    output[2] = 1.0 if axis_std < parameters.axis_to_believe and knee.is_sign_known > 0.0 else 0.0
+    output[3] = 0.0
+    for i in range(3):
+        output[3] += axes[SHANK, i] * rate[SHANK, i] - axes[THIGH, i] * rate[THIGH, i]
+    output[5] = wrapped(knee.angle + turn_from_sensor_axes(axes, memory.across))
+
+
+@compiled
+def usable_interval(knee: Record, rate: FloatArray, force: FloatArray, dt_s: float, parameters: Record) -> float:
+    """s since the last sample that was used; 0 when this one cannot be."""
+    if not dt_s > 0.0:
+        return 0.0
+    interval_s = dt_s + knee.unused_s
+    for s in range(2):
+        for i in range(3):
+            # Not a number fails both comparisons.
+            if not (abs(rate[s, i]) < parameters.largest_rate and abs(force[s, i]) < parameters.largest_force):
+                knee.unused_s = interval_s
+                return 0.0
+    knee.unused_s = 0.0
+    return float(interval_s)
+
+
+@compiled
+def bridge_gap(memory: Memory, gap_s: float, drift: float) -> None:
+    """Level both sensors anew; biases, axes and arms outlive the gap, the heading is soon told by the axis."""
+    for s in range(2):
+        level = memory.levels[s]
+        level.elapsed_s, level.rest_s = 0.0, 0.0
+        level.force_fast[:] = 0.0
+        level.force[:] = 0.0
+    memory.knee[0].heading_variance += 1.0 + drift * drift * gap_s
+    memory.knee[0].has_sample = 0.0
+
+
+@compiled
+def advance_many(
+    memory: Memory, bench: Bench, rate: FloatArray, force: FloatArray, dt_s: float, out: FloatArray
+) -> None:
+    """`advance` over rate and force (n, 2, 3); out (n, 6) as OUTPUTS."""
+    for i in range(rate.shape[0]):
+        advance(memory, bench, rate[i], force[i], dt_s)
+        for k in range(out.shape[1]):
+            out[i, k] = bench.output[k]
+
+
+class KneeAxis:
+    """Knee flexion of one leg (see the head of this file).
+
+    Sensor 0 is worn on the thigh, sensor 1 on the shank, each in any orientation. Intervals between samples may vary.
+    """
+
+    def __init__(self, parameters: KneeAxisParameters = KneeAxisParameters()) -> None:  # noqa: B008 (frozen)
+        self.parameters = parameters
+        self._memory = allocate_memory(parameters)
+        self._bench = prepare_bench(parameters)
+
+    def step(self, rate: NDArray[np.float64], force: NDArray[np.float64], dt_s: float) -> KneeReading:
+        """Take one sample: rate (2, 3) rad/s, specific force (2, 3) m/s^2, dt_s after the sample before."""
+        advance(self._memory, self._bench, rate, force, dt_s)
+        return self.reading()
+
+    def run(self, rate: NDArray[np.float64], force: NDArray[np.float64], dt_s: float) -> NDArray[np.float64]:
+        """Take evenly spaced samples, rate and force (n, 2, 3); OUTPUTS of each as (n, 6)."""
+        out = np.zeros((rate.shape[0], len(OUTPUTS)))
+        advance_many(self._memory, self._bench, np.ascontiguousarray(rate), np.ascontiguousarray(force), dt_s, out)
+        return out
+
+    def reading(self) -> KneeReading:
+        """The reading of the last sample."""
+        flexion, std, is_valid, rate, axis_std, _ = self._bench.output.tolist()
+        knee = self._memory.knee[0]
+        datum = Datum.START
+        if knee["is_zero_set"] > 0.0:
+            datum = Datum.SET
+        elif is_standing(self._memory, self._bench.parameters[0]):
+            datum = Datum.STANDING
+        return KneeReading(
+            flexion, std, is_valid > 0.0, rate, axis_std, bool(knee["is_sign_known"] > 0.0),
+            datum,
+        )  # fmt: skip
+
+    def declare_zero(self) -> None:
+        """The pose of the last sample is 0 from now on."""
+        knee = self._memory.knee[0]
+        knee["zero"], knee["is_zero_set"] = knee["angle"], 1.0
+
+    @property
+    def axes(self) -> NDArray[np.float64]:
+        """Flexion axis in the frame of each sensor, (2, 3); zeros before any motion."""
+        return self._memory.axes.copy()
+
+    @property
+    def arms(self) -> NDArray[np.float64]:
+        """From each sensor to the knee, m, in the frame of the sensor, (2, 3); zeros before any motion."""
+        return self._memory.arms.copy()
+
+    @property
+    def up(self) -> NDArray[np.float64]:
+        """The vertical in the frame of each sensor, (2, 3), at the last sample."""
+        return self._bench.R[:, 1, :].copy()
+
+    def snapshot(self) -> State:
+        """Everything that changes, as JSON values."""
+        return pack_memory(self._memory)
+
+    def restore(self, state: State) -> None:
+        """Go on from a snapshot."""
+        unpack_memory(state, self._memory)

@@ -1,0 +1,160 @@
+"""Orientation of one sensor from its gyroscope and accelerometer; the heading is arbitrary and drifts.
+
+The idea of Laidig and Seel (VQF, Information Fusion 2023): low-pass the specific force where it is nearly constant, in
+the world that the gyroscope keeps, so that impacts and swings average out, and turn that world so that the mean
+points up. The turn this needs in the long run is the gyroscope's bias.
+"""
+
+from math import atan2, sqrt
+
+from services.biomech.two_sensor_knee.compiled import compiled
+from services.biomech.two_sensor_knee.memory import FloatArray, Record
+from services.biomech.two_sensor_knee.turns import fill_matrix, low_pass_gain, product, turn_by, turned, unit
+
+
+@compiled
+def follow_level(
+    level: Record, rate: FloatArray, force: FloatArray, dt_s: float, parameters: Record, R: FloatArray
+) -> None:
+    """Take one sample: rate (3,) rad/s measured, force (3,) m/s^2, dt_s after the one before; R (3, 3) is written."""
+    level.elapsed_s += dt_s
+    is_at_rest = follow_rest(level, rate, force, dt_s, parameters)
+    quat = (level.quat[0], level.quat[1], level.quat[2], level.quat[3])
+    x, y, z = rate[0] - level.bias[0], rate[1] - level.bias[1], rate[2] - level.bias[2]
+    quat = product(quat, turn_by(x * dt_s, y * dt_s, z * dt_s))
+    low_pass_force(level, turned(quat, force[0], force[1], force[2]), dt_s, parameters)
+    turn_x, turn_z = level_by(level)
+    correction = turn_by(turn_x, 0.0, turn_z)
+    quat = unit(product(correction, quat))
+    for i in range(4):
+        level.quat[i] = quat[i]
+    fill_matrix(quat, R)
+    follow_bias(level, R, turn_x / dt_s, turn_z / dt_s, is_at_rest, dt_s, parameters)
+
+
+@compiled
+def low_pass_force(level: Record, force: tuple[float, float, float], dt_s: float, parameters: Record) -> None:
+    """Two equal low-passes; the plain mean while younger than their time."""
+    young = level.elapsed_s < parameters.level_time_s
+    gain = dt_s / level.elapsed_s if young else low_pass_gain(parameters.level_time_s, dt_s)
+    for i in range(3):
+        level.force_fast[i] += gain * (force[i] - level.force_fast[i])
+        if young:
+            level.force[i] = level.force_fast[i]
+        else:
+            level.force[i] += gain * (level.force_fast[i] - level.force[i])
+
+
+@compiled
+def level_by(level: Record) -> tuple[float, float]:
+    """Horizontal rotation vector (x, z), rad, that brings the mean force upright; the kept means are turned along."""
+    fx, fy, fz = level.force[0], level.force[1], level.force[2]
+    square = fx * fx + fz * fz
+    # f x up = (-fz, 0, fx): the right-hand turn from f to up. Below 0.01 rad, tangent for angle is good to 3e-5.
+    if square < 1e-4 * fy * abs(fy):
+        scale = 1.0 / fy
+    else:
+        across = sqrt(square)
+        scale = atan2(across, fy) / (across + 1e-12)
+    turn_x, turn_z = -fz * scale, fx * scale
+    correction = turn_by(turn_x, 0.0, turn_z)
+    fast = turned(correction, level.force_fast[0], level.force_fast[1], level.force_fast[2])
+    mean = turned(correction, fx, fy, fz)
+    for i in range(3):
+        level.force_fast[i] = fast[i]
+        level.force[i] = mean[i]
+    return turn_x, turn_z
+
+
+@compiled
+def follow_rest(level: Record, rate: FloatArray, force: FloatArray, dt_s: float, parameters: Record) -> bool:
+    """Whether rate and force have stayed near their own slow means for `calm_s`."""
+    gain = low_pass_gain(parameters.calm_time_s, dt_s)
+    if level.elapsed_s <= dt_s:
+        gain = 1.0
+    rate_off, force_off, largest = 0.0, 0.0, 0.0
+    for i in range(3):
+        level.calm_rate[i] += gain * (rate[i] - level.calm_rate[i])
+        level.calm_force[i] += gain * (force[i] - level.calm_force[i])
+        rate_off += (rate[i] - level.calm_rate[i]) ** 2
+        force_off += (force[i] - level.calm_force[i]) ** 2
+        largest = max(largest, abs(level.calm_rate[i]))
+    is_calm = (
+        rate_off < parameters.calm_rate**2
+        and force_off < parameters.calm_force**2
+        and largest < parameters.largest_bias
+    )
+    level.rest_s = level.rest_s + dt_s if is_calm else 0.0
+    return bool(level.rest_s >= parameters.calm_s)
+
+
+@compiled
+def follow_bias(
+    level: Record,
+    R: FloatArray,
+    turn_rate_x: float,
+    turn_rate_z: float,
+    is_at_rest: bool,
+    dt_s: float,
+    parameters: Record,
+) -> None:
+    """Kalman filter of the bias: measured whole at rest, by the rate of levelling otherwise.
+
+    A wrong bias b - b^ tips the world by R (b - b^) dt a sample; levelling takes back the low-passed tip. So
+    -turn / dt + LP(R b^) = LP(R) b on the two horizontal axes.
+    """
+    gain = low_pass_gain(parameters.level_time_s, dt_s)
+    bias, covariance = level.bias, level.bias_covariance
+    for k in range(2):
+        row = 2 * k
+        removed = R[row, 0] * bias[0] + R[row, 1] * bias[1] + R[row, 2] * bias[2]
+        level.removed_fast[k] += gain * (removed - level.removed_fast[k])
+        level.removed[k] += gain * (level.removed_fast[k] - level.removed[k])
+        for i in range(3):
+            level.rows_fast[k, i] += gain * (R[row, i] - level.rows_fast[k, i])
+            level.rows[k, i] += gain * (level.rows_fast[k, i] - level.rows[k, i])
+    wander = parameters.bias_wander**2 * dt_s / parameters.bias_time_s
+    for i in range(3):
+        if covariance[i, i] < parameters.start_bias_std**2:
+            covariance[i, i] += wander
+    limit = parameters.largest_bias
+    if is_at_rest:
+        noise = steady_noise(parameters.bias_std_at_rest, wander)
+        for i in range(3):
+            error = min(max(level.calm_rate[i] - bias[i], -limit), limit)
+            correct_bias(level, 1.0 * (i == 0), 1.0 * (i == 1), 1.0 * (i == 2), error, noise)
+    elif level.elapsed_s > 2.0 * parameters.level_time_s:
+        noise = steady_noise(parameters.bias_std_in_motion, wander)
+        for k in range(2):
+            hx, hy, hz = level.rows[k, 0], level.rows[k, 1], level.rows[k, 2]
+            turn_rate = turn_rate_x if k == 0 else turn_rate_z
+            error = -turn_rate + level.removed[k] - (hx * bias[0] + hy * bias[1] + hz * bias[2])
+            correct_bias(level, hx, hy, hz, min(max(error, -limit), limit), noise)
+    for i in range(3):
+        bias[i] = min(max(bias[i], -limit), limit)
+
+
+@compiled
+def steady_noise(std: float, wander: float) -> float:
+    """Measurement variance with which the filter settles at `std`: P^2 / Q + P."""
+    return std**4 / wander + std**2
+
+
+@compiled
+def correct_bias(level: Record, hx: float, hy: float, hz: float, error: float, noise: float) -> None:
+    """One scalar Kalman update of the bias with the row (hx, hy, hz)."""
+    P = level.bias_covariance
+    px = P[0, 0] * hx + P[0, 1] * hy + P[0, 2] * hz
+    py = P[1, 0] * hx + P[1, 1] * hy + P[1, 2] * hz
+    pz = P[2, 0] * hx + P[2, 1] * hy + P[2, 2] * hz
+    scale = 1.0 / (hx * px + hy * py + hz * pz + noise)
+    level.bias[0] += scale * error * px
+    level.bias[1] += scale * error * py
+    level.bias[2] += scale * error * pz
+    P[0, 0] -= scale * px * px
+    P[1, 1] -= scale * py * py
+    P[2, 2] -= scale * pz * pz
+    P[0, 1] -= scale * px * py
+    P[0, 2] -= scale * px * pz
+    P[1, 2] -= scale * py * pz
+    P[1, 0], P[2, 0], P[2, 1] = P[0, 1], P[0, 2], P[1, 2]
