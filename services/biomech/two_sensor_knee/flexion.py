@@ -33,14 +33,17 @@ def twist(relative: FloatArray, axes: FloatArray, across: FloatArray) -> float:
 
 
 @compiled
-def follow_angle(memory: Memory, bench: Bench, dt_s: float) -> None:
+def follow_angle(memory: Memory, bench: Bench, is_moving: bool, dt_s: float) -> None:
     """Unwrap the angle, settle its sign, and say where its zero is."""
     knee = memory.knee[0]
     knee.angle += wrapped(twist(bench.relative, memory.axes, memory.across) - knee.angle)
-    follow_posture(memory, sensor_height(memory, bench.R[THIGH, 1], bench.R[SHANK, 1]), dt_s)
-    settle_sign(memory, bench.parameters[0])
     if knee.is_zero_set == 0.0 and is_standing(memory, bench.parameters[0]):
-        knee.zero = angle_of_verticals(memory.standing, memory.axes, memory.across)
+        zero = angle_of_verticals(memory.standing, memory.axes, memory.across)
+        # The same turn of the circle as the angle: a knee bends by less than half a turn either way.
+        knee.zero = knee.angle + wrapped(zero - knee.angle)
+    if is_moving:
+        follow_posture(memory, sensor_height(memory, bench.R[THIGH, 1], bench.R[SHANK, 1]), dt_s)
+        settle_sign(memory, bench.parameters[0])
 
 
 @compiled
@@ -102,7 +105,7 @@ def sensor_height(memory: Memory, up_thigh: FloatArray, up_shank: FloatArray) ->
 
 @compiled
 def follow_posture(memory: Memory, height: float, dt_s: float) -> None:
-    """Running moments of angle and height, forgotten in half a minute."""
+    """Running moments of angle and height, forgotten over half a minute of motion."""
     posture, angle = memory.posture[0], memory.knee[0].angle
     keep = 1.0 - low_pass_gain(POSTURE_MEMORY_S, dt_s)
     posture.weight = keep * posture.weight + dt_s
@@ -115,9 +118,13 @@ def follow_posture(memory: Memory, height: float, dt_s: float) -> None:
 
 @compiled
 def settle_sign(memory: Memory, parameters: Record) -> None:
-    """Flexion brings the sensors' heights together: turn both axes round when the angle rises with the height."""
+    """Turn both axes round when the motion seen so far speaks against them.
+
+    Two witnesses, each within +-1: flexion brings the sensors' heights together, so the angle falls with the height;
+    and from standing a knee can only bend, so the moving knee's mean lies on the positive side of a standing zero.
+    """
     posture, knee = memory.posture[0], memory.knee[0]
-    if parameters.sign_correlation == 0.0:
+    if parameters.sign_evidence == 0.0:
         knee.is_sign_known = 1.0
         return
     if posture.weight < SIGN_WEIGHT_S:
@@ -128,14 +135,16 @@ def settle_sign(memory: Memory, parameters: Record) -> None:
     if angle_variance < SIGN_SPREAD**2 or height_variance < 1e-6:
         return
     covariance = posture.angle_height / posture.weight - angle * height
-    correlation = covariance / sqrt(angle_variance * height_variance)
-    if correlation > parameters.sign_correlation:
+    evidence = -covariance / sqrt(angle_variance * height_variance)
+    if knee.is_zero_set > 0.0 or is_standing(memory, parameters):
+        evidence += min(max((angle - knee.zero) / sqrt(angle_variance), -1.0), 1.0)
+    if evidence < -parameters.sign_evidence:
         memory.axes[:] *= -1.0
         knee.angle *= -1.0
         knee.zero *= -1.0
         posture.angle *= -1.0
         posture.angle_height *= -1.0
-    if abs(correlation) > parameters.sign_correlation:
+    if abs(evidence) > parameters.sign_evidence:
         knee.is_sign_known = 1.0
 
 

@@ -12,8 +12,8 @@ from services.biomech.two_sensor_knee.memory import SHANK, THIGH, Bench, FloatAr
 
 
 @compiled
-def follow_axis(memory: Memory, bench: Bench, dt_s: float) -> None:
-    """Add the sample's relative rate to both scatters and move both axes."""
+def follow_axis(memory: Memory, bench: Bench, dt_s: float) -> bool:
+    """Add the sample's relative rate to both scatters and move both axes; False when it is too slow to tell."""
     knee, parameters, relative, rate = memory.knee[0], bench.parameters[0], bench.relative, bench.rate
     in_thigh = (
         relative[0, 0] * rate[1, 0] + relative[0, 1] * rate[1, 1] + relative[0, 2] * rate[1, 2] - rate[0, 0],
@@ -27,7 +27,7 @@ def follow_axis(memory: Memory, bench: Bench, dt_s: float) -> None:
     )
     square = in_thigh[0] ** 2 + in_thigh[1] ** 2 + in_thigh[2] ** 2
     if square < parameters.moving_rate**2:
-        return
+        return False
     keep = max(0.0, 1.0 - dt_s / parameters.axis_memory_s)
     if knee.moving_s == 0.0:
         begin_axes(memory, bench, in_thigh, in_shank, sqrt(square))
@@ -37,6 +37,7 @@ def follow_axis(memory: Memory, bench: Bench, dt_s: float) -> None:
     for s in range(2):
         iterate(memory.scatter[s], memory.axes[s])
         straighten(memory.across[s], memory.axes[s])
+    return True
 
 
 @compiled

@@ -102,22 +102,23 @@ def follow_hinge(memory: Memory, bench: Bench, dt_s: float) -> None:
     """Axis, heading and angle of the sample, once the headings are tied."""
     knee, parameters, output = memory.knee[0], bench.parameters[0], bench.output
     fill_relative(bench.R[THIGH], bench.R[SHANK], knee.heading, bench.relative)
-    follow_axis(memory, bench, dt_s)
+    is_moving = follow_axis(memory, bench, dt_s)
     axis_std = axis_deviation(memory, bench)
     output[4] = axis_std
     if knee.moving_s == 0.0:
         return
     tie(memory, bench, axis_std, dt_s)
     fill_relative(bench.R[THIGH], bench.R[SHANK], knee.heading, bench.relative)
-    follow_angle(memory, bench, dt_s)
+    follow_angle(memory, bench, is_moving, dt_s)
     axes, rate = memory.axes, bench.rate
-    output[0] = wrapped(knee.angle - knee.zero)
     output[1] = angle_deviation(memory, bench, axis_std)
     output[2] = 1.0 if axis_std < parameters.axis_to_believe and knee.is_sign_known > 0.0 else 0.0
     output[3] = 0.0
     for i in range(3):
         output[3] += axes[SHANK, i] * rate[SHANK, i] - axes[THIGH, i] * rate[THIGH, i]
-    output[5] = wrapped(knee.angle + turn_from_sensor_axes(axes, memory.across))
+    now = knee.angle + parameters.sample_delay_s * output[3]
+    output[0] = wrapped(now - knee.zero)
+    output[5] = wrapped(now + turn_from_sensor_axes(axes, memory.across))
 
 
 @compiled

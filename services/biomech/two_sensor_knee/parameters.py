@@ -75,9 +75,9 @@ class HingeParameters:
     """Share of the off-axis motion that never averages out: soft tissue moves with the knee. [T]"""
     axis_floor: float = radians(0.7)
     """rad. Below, sensors' own axes are not square."""
-    axis_to_tie: float = radians(20.0)
+    axis_to_tie: float = radians(40.0)
     """rad. Uncertainty of the axis at which it begins to tie the headings."""
-    axis_to_believe: float = radians(15.0)
+    axis_to_believe: float = radians(25.0)
     """rad. Uncertainty of the axis at which the angle becomes valid."""
     heading_time_s: float = 3.0
     """s. Averaging of the heading told by a horizontal axis; longer as the axis becomes upright. [T]"""
@@ -91,8 +91,10 @@ class HingeParameters:
     """rad. Inclination of one sensor. [T]"""
     level_start_std: float = radians(6.0)
     """rad. Inclination told by one second of accelerometer in motion. [T]"""
-    sign_correlation: float = 0.5
-    """Correlation of angle and sensor height from which the sign is known; 0 takes the sign as it comes. [T]"""
+    sign_evidence: float = 0.5
+    """Evidence from which the sign is known; 0 takes the sign as it comes."""
+    sample_delay_s: float = 0.005
+    """s by which a sample's meaning is older than its time stamp, beyond the interval it is the mean of. [T]"""
     taller: float = 0.03
     """m by which a later rest must be taller to become the standing datum."""
     upright_share: float = 0.6
