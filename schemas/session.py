@@ -1,11 +1,12 @@
 """What a session is: who measures what, on which body, with which parameters. No identity of a person."""
 
 from enum import StrEnum
-from typing import Literal
+from typing import Any, Literal, Self
 
-from pydantic import Field
+from pydantic import Field, model_validator
 
 from schemas.payload import Payload, Vector3
+from schemas.rhythm import KnownRhythm
 from schemas.vocabulary import Segment
 
 
@@ -84,3 +85,20 @@ class SessionDescription(Payload):
     standing: list[StandingInterval]
     reference: list[ReferenceChannel]
     duration_s: float | None = Field(description="s; null for a live source")
+    known_rhythms: list[KnownRhythm] = Field(
+        max_length=3,
+        description="learned before this session, at most one of each kind; the rhythm starts from the person's own",
+    )
+
+    @model_validator(mode="before")
+    @classmethod
+    def _of_an_older_writer(cls, fields: Any) -> Any:
+        """A session from before rhythms were handed on knew none."""
+        return {"known_rhythms": [], **fields} if isinstance(fields, dict) else fields
+
+    @model_validator(mode="after")
+    def _one_of_each_kind(self) -> Self:
+        kinds = [known.kind for known in self.known_rhythms]
+        if len(set(kinds)) < len(kinds):
+            raise ValueError("known_rhythms: at most one previous trial, one previous visit and one exemplar")
+        return self

@@ -11,7 +11,7 @@ from schemas.imu import ImuBatch, ReferenceBatch
 from schemas.kinematics import Calibration, JointState, LivePose, SegmentMotion
 from schemas.metrics import SessionMetrics
 from schemas.payload import Payload
-from schemas.rhythm import Rhythm
+from schemas.rhythm import LearnedRhythm, Rhythm
 from schemas.session import SessionDescription
 
 
@@ -50,6 +50,9 @@ JOINT_STATE = Signal(
     "joint_state", JointState, "estimation", Quality.LOSSLESS, "derived", 100.0, "joint coordinates with deviations"
 )
 RHYTHM = Signal("rhythm", Rhythm, "estimation", Quality.LOSSLESS, "derived", 100.0, "stride phase and frequency")
+LEARNED_RHYTHM = Signal(
+    "learned_rhythm", LearnedRhythm, "estimation", Quality.LOSSLESS, "derived", None, "mean stride in Fourier terms"
+)
 SEGMENT_MOTION = Signal(
     "segment_motion", SegmentMotion, "estimation", Quality.LOSSLESS, "derived", 100.0, "acceleration and turning of "
     "segments whose lone sensor tells gait events",
@@ -70,7 +73,7 @@ CHECKPOINT = Signal(
 PROGRESS = Signal("progress", Progress, "every consumer", Quality.LIVE, None, 10.0, "how far a consumer has come")
 
 SIGNALS: tuple[Signal, ...] = (
-    IMU, REFERENCE, SESSION, CALIBRATION, JOINT_STATE, RHYTHM, SEGMENT_MOTION, LIVE_POSE,
+    IMU, REFERENCE, SESSION, CALIBRATION, JOINT_STATE, RHYTHM, LEARNED_RHYTHM, SEGMENT_MOTION, LIVE_POSE,
     GAIT_EVENT, STRIDE, METRICS, GAP, HEALTH, CHECKPOINT, PROGRESS,
 )  # fmt: skip
 BY_NAME: dict[str, Signal] = {signal.name: signal for signal in SIGNALS}

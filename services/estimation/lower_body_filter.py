@@ -174,6 +174,11 @@ class LowerBodyFilter:
         rest[0, self.model.soft] = p.noise.soft_knee_std**2
         return rest
 
+    @property
+    def rhythm(self) -> TrustedRhythm:
+        """The rhythm that the joints share."""
+        return self._rhythm
+
     def _follow_rhythm(self, dt_s: float) -> RhythmReading:
         velocity = self.ekf.x[1]
         reading = self._rhythm.step(velocity.take(self._rhythm_joints), dt_s)

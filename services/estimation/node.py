@@ -8,14 +8,15 @@ import numpy as np
 
 from schemas.health import Rejection
 from schemas.kinematics import JointState
-from schemas.rhythm import Rhythm
+from schemas.rhythm import LearnedRhythm, Rhythm
 from schemas.session import SessionDescription
-from schemas.signals import CALIBRATION, JOINT_STATE, LIVE_POSE, RHYTHM, SEGMENT_MOTION, Signal
+from schemas.signals import CALIBRATION, JOINT_STATE, LEARNED_RHYTHM, LIVE_POSE, RHYTHM, SEGMENT_MOTION, Signal
 from schemas.vocabulary import LOWER_BODY, Segment
 from services.biomech.event_sources import lone_segments, worn_segments
 from services.estimation.calibration_message import MODEL, calibration_message
 from services.estimation.calibrator import Calibrator, pack_calibrated, unpack_calibrated
 from services.estimation.intake import Intake
+from services.estimation.learning import RhythmLearning, start_rhythm
 from services.estimation.live_pose import estimated_pose, sensor_statuses, unused_statuses, waiting_pose
 from services.estimation.lower_body_filter import Calibrated, LowerBodyFilter, Row
 from services.estimation.parameters import EstimationParameters
@@ -34,7 +35,7 @@ class EstimationNode:
     all at once when it stands. The numbers do not depend on how the samples were batched into messages.
     """
 
-    outputs: tuple[Signal, ...] = (CALIBRATION, JOINT_STATE, RHYTHM, SEGMENT_MOTION, LIVE_POSE)
+    outputs: tuple[Signal, ...] = (CALIBRATION, JOINT_STATE, RHYTHM, LEARNED_RHYTHM, SEGMENT_MOTION, LIVE_POSE)
 
     def __init__(self, description: SessionDescription, parameters: EstimationParameters | None = None) -> None:
         self._description = description
@@ -44,6 +45,7 @@ class EstimationNode:
         self._calibrated: Calibrated | None = None
         self._filter: LowerBodyFilter | None = None
         self._lone: LoneSegments | None = None
+        self._learning = RhythmLearning()
         self._next_live_ns = 0
 
     @property
@@ -62,7 +64,7 @@ class EstimationNode:
             calibrated = self._calibrator.finish()
             if calibrated is not None:
                 outputs += self._start(calibrated)
-        return outputs
+        return outputs + _learned(self._learning.report())
 
     def rejections(self) -> list[Rejection]:
         """Counts by sensor and reason."""
@@ -96,6 +98,7 @@ class EstimationNode:
         """Publish the calibration and catch up with the walk."""
         self._calibrated = calibrated
         self._filter, self._lone = self._new_filter(calibrated), self._new_lone(calibrated)
+        start_rhythm(self._filter.rhythm, self._description.known_rhythms)
         kept = self._calibrator.batches
         message = calibration_message(self._description, self._intake, calibrated)
         outputs = [Output(CALIBRATION, kept[0].captured_ns, message)]
@@ -131,6 +134,7 @@ class EstimationNode:
         rows: list[Row] = []
         valid: list[bool] = []
         observed: list[Segment] = []
+        learned: list[Output] = []
         for tick in ticks:
             row = running.fuse(tick.first(self._intake.body_sensors))
             if rows and (running.valid != valid or running.observed != observed):
@@ -138,11 +142,13 @@ class EstimationNode:
                 rows = []
             rows.append(row)
             valid, observed = running.valid, running.observed
+            learned += _learned(self._learning.take(row, valid))
             if self._lone is not None:
                 self._lone.take(tick, row.position[TILT], row.position[OBLIQUITY])
         if not rows:
             return []
-        return [*outputs, *_estimates(rows, valid, observed, self._lone), *self._picture(running, rows[-1])]
+        outputs += _estimates(rows, valid, observed, self._lone) + learned
+        return outputs + self._picture(running, rows[-1])
 
     def _picture(self, running: LowerBodyFilter, row: Row) -> list[Output]:
         """The picture of the newest row, when its time has come. None while catching up: nobody could watch it."""
@@ -154,7 +160,7 @@ class EstimationNode:
         waiting = nobody | ~self._calibrated.alignment.aligned
         statuses = sensor_statuses(self._intake.sensors, self._intake.checks, row.captured_ns, refused, waiting)
         statuses += unused_statuses(self._intake.unused)
-        pose = estimated_pose(row, running.model, running.ekf.x[0], running.valid, running.unseen, statuses)
+        pose = estimated_pose(row, running.model, running.ekf.estimate[0], running.valid, running.unseen, statuses)
         return [Output(LIVE_POSE, row.captured_ns, pose)]
 
     def _is_live_due(self, captured_ns: int) -> bool:
@@ -172,6 +178,7 @@ class EstimationNode:
             "calibrated": None if self._calibrated is None else pack_calibrated(self._calibrated),
             "filter": None if self._filter is None else self._filter.snapshot(),
             "lone": None if self._lone is None else self._lone.snapshot(),
+            "learning": self._learning.snapshot(),
             "next_live_ns": self._next_live_ns,
         }
 
@@ -187,7 +194,12 @@ class EstimationNode:
             self._lone = self._new_lone(self._calibrated)
             if self._lone is not None:
                 self._lone.restore(state["lone"])
+        self._learning.restore(state["learning"])
         self._next_live_ns = state["next_live_ns"]
+
+
+def _learned(rhythm: LearnedRhythm | None) -> list[Output]:
+    return [] if rhythm is None else [Output(LEARNED_RHYTHM, rhythm.captured_ns, rhythm)]
 
 
 def _estimates(rows: list[Row], valid: list[bool], observed: list[Segment], lone: LoneSegments | None) -> list[Output]:

@@ -40,5 +40,5 @@ def _session(estimator: str, sensors: list[SensorDescription]) -> SessionDescrip
     return SessionDescription(
         session="warm-up", title="", started_unix_ns=0, origin="synthetic", protocol="", estimator=estimator,
         walk_path="turning", hubs=[HubDescription(name="none", sensors=sensors)], anthropometry=body, standing=[],
-        reference=[], duration_s=None,
+        reference=[], duration_s=None, known_rhythms=[],
     )  # fmt: skip

@@ -101,6 +101,9 @@ class McapRecording:
             "origin": "archive",
             "estimator": self._identity.estimator or self._recorded.estimator,
             "walk_path": self._identity.walk_path or self._recorded.walk_path,
+            "known_rhythms": self._recorded.known_rhythms
+            if self._identity.known_rhythms is None
+            else list(self._identity.known_rhythms),
         }
         return self._recorded.model_copy(update=changed)
 

@@ -5,6 +5,7 @@ from typing import Annotated, TypeVar
 
 from pydantic import BaseModel, ConfigDict, Field, ValidationError
 
+from schemas.rhythm import KnownRhythm
 from schemas.session import WalkPath
 from services.ingest.errors import SourceError
 
@@ -26,6 +27,7 @@ class StartOrder(Order):
     speed: Annotated[float, Field(gt=0, le=1000)] | None = Field(description="times real time; null: as followed")
     estimator: str | None = None
     walk_path: WalkPath | None = None
+    known_rhythms: list[KnownRhythm] | None = Field(default=None, max_length=3, description="null: as recorded")
     session: str | None = None
     ticks: Annotated[int, Field(ge=1, le=5)] = 1
 

@@ -78,6 +78,7 @@ class Recording:
                 for name, unit in channels_of(entry)
             ],
             duration_s=self._last_ns() * 1e-9,
+            known_rhythms=list(identity.known_rhythms or ()),
         )
 
     def messages(self) -> Iterator[SourceMessage]:

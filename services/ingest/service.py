@@ -114,7 +114,13 @@ class IngestService:
         order = parse_order(StartOrder, body)
         if order.session in self._descriptions:
             raise InvalidOrder(f"session {order.session} runs already; stop it or choose another id")
-        source = open_source(order.source, session=order.session, estimator=order.estimator, walk_path=order.walk_path)
+        source = open_source(
+            order.source,
+            session=order.session,
+            estimator=order.estimator,
+            walk_path=order.walk_path,
+            known_rhythms=order.known_rhythms,
+        )
         description = source.describe()
         with self._lock:
             if description.session in self._descriptions:

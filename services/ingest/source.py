@@ -1,9 +1,10 @@
 """Open any source by its specification, and read it as messages."""
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from pathlib import Path
 
 from schemas.archive_layout import PART_SUFFIX
+from schemas.rhythm import KnownRhythm
 from schemas.session import WalkPath
 from services.flow.message import Envelope, Message
 from services.ingest.batching import Batcher
@@ -30,15 +31,20 @@ def known_recordings() -> dict[str, Path]:
 
 
 def open_source(
-    spec: str, *, session: str | None = None, estimator: str | None = None, walk_path: WalkPath | None = None
+    spec: str,
+    *,
+    session: str | None = None,
+    estimator: str | None = None,
+    walk_path: WalkPath | None = None,
+    known_rhythms: Sequence[KnownRhythm] | None = None,
 ) -> Source:
     """Open a recording folder, a manifest, an .mcap file or an archived session's folder, a known recording's name,
     `synthetic:walk?speed=1.1` or `synthetic:march?metronome=70`.
 
-    `session` None takes a random id, `estimator` and `walk_path` None leave the choice to the source.
+    `session` None takes a random id; `estimator`, `walk_path` and `known_rhythms` None leave the choice to the source.
     Raises SourceError, saying what is wrong where and what to do.
     """
-    identity = Identity.new(session, estimator, walk_path)
+    identity = Identity.new(session, estimator, walk_path, known_rhythms)
     scheme, separator, rest = spec.partition(":")
     if separator and scheme == "synthetic":
         return open_synthetic(rest, identity)
@@ -54,8 +60,8 @@ def open_source(
         archived = [] if (path / FILE_NAME).exists() else raw_files(path)
         return McapRecording(archived, identity) if archived else Recording(path / FILE_NAME, identity)
     raise UnknownSource(
-        f"{spec[:200]!r} is no folder with {FILE_NAME}, no .mcap file, neither synthetic:walk nor synthetic:march, and no "
-        f"known recording ({', '.join(named)})"
+        f"{spec[:200]!r} is no folder with {FILE_NAME}, no .mcap file, neither synthetic:walk nor synthetic:march, "
+        f"and no known recording ({', '.join(named)})"
     )
 
 

@@ -185,6 +185,7 @@ def describe(session: str) -> SessionDescription:
         standing=[],
         reference=[],
         duration_s=None,
+        known_rhythms=[],
     )
 
 

@@ -72,10 +72,12 @@ class LearnedStrides:
     def take(self, velocity: Sequence[float], reading: RhythmReading, dt_s: float) -> None:
         """Take one sample: rad/s, one per channel, dt_s after the one before, and what the rhythm made of it."""
         sample = [reading.phase, reading.quality, dt_s, *velocity]
-        before, self._before = self._before, sample
+        before = self._before
         if not reading.locked or before is None or not 0.0 < sample[0] - before[0] < 1.0:
             self.interrupt()
+            self._before = sample
             return
+        self._before = sample
         boundary = 2.0 * pi * floor(sample[0] / (2.0 * pi))
         if before[0] >= boundary:
             if self._samples:
@@ -89,7 +91,7 @@ class LearnedStrides:
     def interrupt(self) -> None:
         """The stride under way, and the one before it, do not count."""
         self._samples = []
-        self._pending = None
+        self._before = self._pending = None
 
     def _close(self, samples: list[list[float]]) -> None:
         if self._pending is not None:

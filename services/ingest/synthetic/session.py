@@ -87,6 +87,7 @@ class SyntheticSession(ABC):
             standing=[],
             reference=reference_channels() if parameters.truth else [],
             duration_s=(self.sample_count - 1) / parameters.rate,
+            known_rhythms=[],
         )
 
     def strides(self, time_s: Array) -> Strides:

@@ -28,6 +28,7 @@ class SyntheticSource:
             update={
                 "estimator": self._identity.estimator or description.estimator,
                 "walk_path": self._identity.walk_path or description.walk_path,
+                "known_rhythms": list(self._identity.known_rhythms or ()),
             }
         )
 
