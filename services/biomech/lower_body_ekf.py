@@ -12,12 +12,27 @@ import numpy as np
 from numpy.typing import NDArray
 
 from schemas.vocabulary import LOWER_BODY, Segment
+from services.biomech.companions import CompanionModel, companion_tables
 from services.biomech.kernels.bundle import advance, tie
 from services.biomech.kernels.fixed import LANES, width_of
-from services.biomech.kernels.tables import Body, Columns, Motion, Noise, Options, Sensors, Update, empty_motion
+from services.biomech.kernels.tables import (
+    Body,
+    Columns,
+    Companions,
+    Motion,
+    Noise,
+    Options,
+    Sensors,
+    Update,
+    empty_motion,
+)
 from services.biomech.lower_body import LowerBodyModel, SensorMount
+from services.flow.node import State, pack_array, unpack_array
 
 Array = NDArray[np.float64]
+
+REMEMBERED = ("x", "jerk", "evidence", "weight", "estimate")
+"""Tables of the companions that outlive a step."""
 
 FASTEST_JOINT = 100.0
 """rad/s. The difference of two worn gyroscopes at the end of their range (35 rad/s) stays below."""
@@ -60,7 +75,10 @@ class NoiseModel:
 
 
 class LowerBodyEkf:
-    """The filter of one session. `x` (3, n) and `P` (N, N) are its whole state."""
+    """The filter of one session. `x` (3, n), `P` (N, N) and what `companions` remember are its whole state.
+
+    `estimate` (3, n) is what is believed: x, where there are no companions.
+    """
 
     def __init__(
         self,
@@ -69,6 +87,7 @@ class LowerBodyEkf:
         gyro_bias: Array,
         measurement: MeasurementModel = MeasurementModel(),
         noise: NoiseModel = NoiseModel(),
+        companions: CompanionModel | None = None,
     ) -> None:
         if measurement.accel_sees_motion and not model.translations:
             raise ValueError("accel_sees_motion needs a model with translations")
@@ -96,7 +115,13 @@ class LowerBodyEkf:
             np.zeros(M), np.zeros((6, M)), np.zeros((6, 6)), np.zeros(6), width,
         )  # fmt: skip
         variances = _noise(model, S, noise)
-        self._tables = (self.body, self.sensors, self.columns, self.options, variances, self._motion, self._update)
+        self.companions = companion_tables(
+            model, mounts, companions or CompanionModel(), noise.jerk_density, noise.gyro_std, width
+        )
+        self.estimate = self.companions.estimate
+        self._tables = (
+            self.body, self.sensors, self.columns, self.options, variances, self._motion, self._update, self.companions
+        )  # fmt: skip
         self._bundle = tie(self.x, self.padded_covariance, self.bias, *self._tables)
 
     def advance(self, dt_s: float, samples: Array, fresh: NDArray[np.bool_], jerk: Array, rest: Array) -> None:
@@ -107,19 +132,40 @@ class LowerBodyEkf:
         """
         advance(self._bundle, dt_s, jerk, samples, fresh, rest)
 
-    def tables(self) -> tuple[Body, Sensors, Columns, Options, Noise, Motion, Update]:
+    def tables(self) -> tuple[Body, Sensors, Columns, Options, Noise, Motion, Update, Companions]:
         """The kernels' tables and scratch, in the order in which `step` takes them."""
         return self._tables
+
+    def innovations(self) -> Array:
+        """(1 + C, S, 6) newest sample minus its prediction, rad/s and m/s^2: of `x`, then of each companion.
+
+        Where a sensor had no sample, the innovation of its last one.
+        """
+        return np.concatenate([self._update.innovation[None], self.companions.innovation])
 
     def settle(self) -> None:
         """After a time without samples: keep the pose, forget how it moved and how sure it was."""
         self.x[1:] = 0.0
+        self.estimate[:] = self.x
+        self.companions.x[:] = self.x
+        self.companions.jerk[:] = 0.0
+        self.companions.evidence[:] = 0.0
         self.P[:] = np.diag(self._start_variance(len(self.P)))
+
+    def pack_companions(self) -> State:
+        """What companions remember, as JSON values."""
+        return {name: pack_array(getattr(self.companions, name)) for name in REMEMBERED}
+
+    def unpack_companions(self, state: State) -> None:
+        """Inverse of `pack_companions`."""
+        for name in REMEMBERED:
+            array = getattr(self.companions, name)
+            array[...] = unpack_array(state[name]).reshape(array.shape)
 
     def is_sound(self) -> bool:
         """Finite throughout, and no joint faster than anything that moves. Translations drift: no sensor sees them."""
         rates = self.x[1, self.model.first_rotation :]
-        finite = np.isfinite(self.x).all() and np.isfinite(self._variances).all()
+        finite = all(np.isfinite(array).all() for array in (self.x, self.companions.x, self._variances))
         return bool(finite and np.abs(rates).max() < FASTEST_JOINT)
 
     def start_over(self) -> None:

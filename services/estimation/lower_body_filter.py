@@ -8,6 +8,7 @@ from numpy.typing import NDArray
 
 from schemas.session import SensorDescription, SessionDescription
 from schemas.vocabulary import LOWER_BODY, Segment
+from services.biomech.companions import CompanionModel
 from services.biomech.lower_body import PARENT_SEGMENT, SEGMENTS, LowerBodyModel, SensorMount, segment_of
 from services.biomech.lower_body_ekf import LowerBodyEkf
 from services.biomech.rhythm.reading import RhythmEstimator, RhythmReading
@@ -63,15 +64,23 @@ class LowerBodyFilter:
         self._worn = {segment for segment, aligned in zip(self._segments, self._aligned, strict=True) if aligned}
         self._is_aligned: list[bool] = self._aligned.tolist()
         frames = calibrated.alignment.R_segment_from_sensor
+        rate_hz = max((sensor.rate_hz for sensor in sensors), default=100.0)
         mounts = [_mount(sensor, R) for sensor, R in zip(sensors, frames, strict=True)]
-        self.ekf = LowerBodyEkf(self.model, mounts, calibrated.gyro_bias, parameters.measurement, parameters.noise)
-        self._rhythm = TrustedRhythm(len(RHYTHM_CHANNELS))
+        self.ekf = LowerBodyEkf(
+            self.model,
+            mounts,
+            calibrated.gyro_bias,
+            parameters.measurement,
+            parameters.noise,
+            _companions_of(description.estimator, parameters, rate_hz),
+        )
+        self._rhythm = TrustedRhythm(len(RHYTHM_CHANNELS), parameters.rhythm)
         self._rhythm_joints = np.array([self.model.names.index(name) for name in RHYTHM_CHANNELS])
         self._driver, self._driver_joints = _driver_of(description.estimator, self.model, self._rhythm)
         self._jerk = np.zeros(len(self.model.dofs))
         self._starts_moving = calibrated.from_walking
         self._may_diverge = parameters.measurement.gyro_sees_position or parameters.measurement.accel_sees_motion
-        self._ahead = _ahead(parameters.sample_delay / max((sensor.rate_hz for sensor in sensors), default=100.0))
+        self._ahead = _ahead(parameters.sample_delay / rate_hz)
         self._last_ns: int | None = None
         self._heard_ns: list[int] = []
         self.unseen: frozenset[Segment] = frozenset(SEGMENTS)
@@ -180,16 +189,17 @@ class LowerBodyFilter:
         return self._rhythm
 
     def _follow_rhythm(self, dt_s: float) -> RhythmReading:
-        velocity = self.ekf.x[1]
+        velocity, bound = self.ekf.estimate[1], self.parameters.longest_jerk
         reading = self._rhythm.step(velocity.take(self._rhythm_joints), dt_s)
-        if self._driver is not None:
-            source = reading if self._driver is self._rhythm else self._driver.step(velocity[self._driver_joints], dt_s)
-            bound = self.parameters.longest_jerk
-            self._jerk[self._driver_joints] = np.minimum(np.maximum(source.jerk, -bound), bound)
+        if self._driver is self._rhythm:
+            self.ekf.companions.jerk[:, self._driver_joints] = np.minimum(np.maximum(reading.jerk, -bound), bound)
+        elif self._driver is not None:
+            jerk = self._driver.step(velocity[self._driver_joints], dt_s).jerk
+            self._jerk[self._driver_joints] = np.minimum(np.maximum(jerk, -bound), bound)
         return reading
 
     def _row(self, captured_ns: int, reading: RhythmReading) -> Row:
-        values = np.concatenate([self._ahead @ self.ekf.x, self.ekf.deviations()])
+        values = np.concatenate([self._ahead @ self.ekf.estimate, self.ekf.deviations()])
         if len(self.model.soft) == 0 or self.model.first_rotation > 0:
             pick = self.model.reported
             values = np.where(pick >= 0, values[:, pick], 0.0)
@@ -202,6 +212,7 @@ class LowerBodyFilter:
         return {
             "x": pack_array(self.ekf.x),
             "P": pack_array(self.ekf.P),
+            "companions": self.ekf.pack_companions(),
             "jerk": pack_array(self._jerk),
             "last_ns": self._last_ns,
             "heard_ns": list(self._heard_ns),
@@ -215,6 +226,7 @@ class LowerBodyFilter:
         """Inverse of `snapshot`."""
         self.ekf.x[:] = unpack_array(state["x"])
         self.ekf.P[:] = unpack_array(state["P"])
+        self.ekf.unpack_companions(state["companions"])
         self._jerk[:] = unpack_array(state["jerk"])
         self._last_ns = state["last_ns"]
         self._heard_ns = list(state["heard_ns"])
@@ -236,6 +248,14 @@ def _ahead(delay_s: float) -> Array:
 def _mount(sensor: SensorDescription, R_segment_from_sensor: Array) -> SensorMount:
     at = sensor.position_in_segment
     return SensorMount(sensor.segment, R_segment_from_sensor, None if at is None else (at[0], at[1], at[2]))
+
+
+def _companions_of(estimator: str, parameters: FilterParameters, rate_hz: float) -> CompanionModel:
+    """The rhythm drives a state beside the plain filter's; the published oscillator drives the filter itself."""
+    if estimator != "rhythmic_ekf":
+        return CompanionModel()
+    shares = (1.0, parameters.calm_share) if parameters.calm_share < 1.0 else (1.0,)
+    return CompanionModel(shares, RHYTHM_CHANNELS, parameters.judges, parameters.gate, rate_hz)
 
 
 def _driver_of(

@@ -1,9 +1,12 @@
 """Every tunable of the estimation service."""
 
 from dataclasses import dataclass, field, replace
+from typing import Literal
 
 from schemas.session import SessionDescription
 from services.biomech.lower_body_ekf import MeasurementModel, NoiseModel
+from services.biomech.rhythm.parameters import TrustedParameters
+from services.biomech.single_joint.innovation_gate import InnovationGate
 
 
 @dataclass(frozen=True)
@@ -91,6 +94,10 @@ class FilterParameters:
     unworn_std: float = 0.1  # rad and rad/s at 100 Hz: the same where no sensor is worn. Looser, an unseen pelvis
     # shakes with every landing of the leg (1 deg at the knee); tighter on silent sensors, their return takes longer
     rest_acceleration_std: float = 10.0  # rad/s^2 at 100 Hz, the same for its acceleration
+    rhythm: TrustedParameters = field(default_factory=lambda: TrustedParameters(harmonics=10))
+    gate: InnovationGate = field(default_factory=InnovationGate)
+    judges: Literal["segment", "leg", "body"] = "segment"  # whose gyroscopes decide whether a joint follows the rhythm
+    calm_share: float = 0.1  # of the process noise that a third state has once the rhythm is learned; 1 runs none
     longest_jerk: float = 2000.0  # rad/s^3, bound on what a rhythm may feed; knee jerk in walking stays below 1500
 
 

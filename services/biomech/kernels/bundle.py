@@ -7,9 +7,20 @@ from numba.experimental import structref
 
 from services.biomech.kernels.compiled import kernel
 from services.biomech.kernels.step import step
-from services.biomech.kernels.tables import Array, Body, Columns, Flags, Motion, Noise, Options, Sensors, Update
+from services.biomech.kernels.tables import (
+    Array,
+    Body,
+    Columns,
+    Companions,
+    Flags,
+    Motion,
+    Noise,
+    Options,
+    Sensors,
+    Update,
+)
 
-FIELDS = ["x", "P", "bias", "body", "sensors", "columns", "options", "noise", "motion", "update"]
+FIELDS = ["x", "P", "bias", "body", "sensors", "columns", "options", "noise", "motion", "update", "companions"]
 
 
 @structref.register
@@ -28,9 +39,10 @@ structref.define_proxy(Bundle, _BundleType, FIELDS)
 def tie(
     x: Array, P: Array, bias: Array,
     body: Body, sensors: Sensors, columns: Columns, options: Options, noise: Noise, motion: Motion, update: Update,
+    companions: Companions,
 ) -> Any:  # fmt: skip
     """The bundle of these arrays."""
-    return Bundle(x, P, bias, body, sensors, columns, options, noise, motion, update)
+    return Bundle(x, P, bias, body, sensors, columns, options, noise, motion, update, companions)
 
 
 @kernel
@@ -39,4 +51,5 @@ def advance(bundle: Any, dt: float, jerk: Array, samples: Array, fresh: Flags, r
     step(
         bundle.x, bundle.P, dt, jerk, samples, fresh, bundle.bias, rest,
         bundle.body, bundle.sensors, bundle.columns, bundle.options, bundle.noise, bundle.motion, bundle.update,
+        bundle.companions,
     )  # fmt: skip

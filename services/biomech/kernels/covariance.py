@@ -123,7 +123,7 @@ def innovation_covariance(H: Array, innovation: Array, variance: Array, update: 
 def whiten(update: Update) -> None:
     """W and y multiplied by the inverse of the Cholesky factor of L, in place; dx += W' y.
 
-    Written out so that the factor stays in registers; its diagonal is kept as the reciprocal.
+    Written out so that the factor stays in registers; it is left in L, the diagonal as its reciprocal.
     """
     L, W, y, dx = update.L, fixed(update.W, update.width), update.y, update.dx
     l00 = 1.0 / np.sqrt(L[0, 0])
@@ -147,6 +147,11 @@ def whiten(update: Update) -> None:
     y3 = (y[3] - l30 * y0 - l31 * y1 - l32 * y2) * l33
     y4 = (y[4] - l40 * y0 - l41 * y1 - l42 * y2 - l43 * y3) * l44
     y5 = (y[5] - l50 * y0 - l51 * y1 - l52 * y2 - l53 * y3 - l54 * y4) * l55
+    y[0], y[1], y[2], y[3], y[4], y[5] = y0, y1, y2, y3, y4, y5
+    L[0, 0], L[1, 0], L[1, 1], L[2, 0], L[2, 1], L[2, 2] = l00, l10, l11, l20, l21, l22
+    L[3, 0], L[3, 1], L[3, 2], L[3, 3] = l30, l31, l32, l33
+    L[4, 0], L[4, 1], L[4, 2], L[4, 3], L[4, 4] = l40, l41, l42, l43, l44
+    L[5, 0], L[5, 1], L[5, 2], L[5, 3], L[5, 4], L[5, 5] = l50, l51, l52, l53, l54, l55
     for k in range(W.shape[1]):
         a = W[0, k] * l00
         b = (W[1, k] - l10 * a) * l11

@@ -75,6 +75,35 @@ def gravity_rows(s: int, body: Body, sensors: Sensors, motion: Motion, z: Array,
             put(H, 3, column(0, j, t, n), cross(f, (H[0, c], H[1, c], H[2, c])))
 
 
+@inlined
+def motion_at(s: int, sensors: Sensors, motion: Motion) -> tuple[Vector, Vector, Vector]:
+    """Where a sensor is in the world, its velocity and acceleration.
+
+    P = o + r,  V = o' + w x r,  A = o'' + al x r + w x (w x r).
+    """
+    b = sensors.joint[s]
+    arm, w = rotate(motion.rotation, b, load(sensors.position, s)), load(motion.rate, b)
+    swing = cross(w, arm)
+    turning = add(cross(load(motion.angular_acceleration, b), arm), cross(w, swing))
+    return (
+        add(load(motion.origin, b), arm),
+        add(load(motion.origin_velocity, b), swing),
+        add(load(motion.origin_acceleration, b), turning),
+    )
+
+
+@kernel
+def expected_sample(s: int, sensors: Sensors, options: Options, motion: Motion, z: Array) -> None:
+    """z (6,) alone: angular velocity and specific force, without rows."""
+    axes = sensor_axes(s, sensors, motion)
+    z[0], z[1], z[2] = into(axes, load(motion.rate, sensors.joint[s]))
+    f = (0.0, GRAVITY, 0.0)
+    if options.accel_sees_motion:
+        _, _, A = motion_at(s, sensors, motion)
+        f = (A[0], A[1] + GRAVITY, A[2])
+    z[3], z[4], z[5] = into(axes, f)
+
+
 @kernel
 def dynamic_rows(s: int, body: Body, sensors: Sensors, motion: Motion, z: Array, H: Array) -> None:
     """The accelerometer with the whole motion: z[3:6] = R' f with f = A + (0, g, 0) at the sensor.
@@ -83,12 +112,8 @@ def dynamic_rows(s: int, body: Body, sensors: Sensors, motion: Motion, z: Array,
     d/d(ddq) = R'(a x r);  d/d(dq) = 2 R'(a' x r + a x r');  d/dq = R'(a'' x r + 2 a' x r' + a x (r'' - f)).
     """
     n, t = body.parent.size, body.translations
-    b, axes = sensors.joint[s], sensor_axes(s, sensors, motion)
-    arm, w = rotate(motion.rotation, b, load(sensors.position, s)), load(motion.rate, b)
-    swing = cross(w, arm)
-    P, V = add(load(motion.origin, b), arm), add(load(motion.origin_velocity, b), swing)
-    turning = add(cross(load(motion.angular_acceleration, b), arm), cross(w, swing))
-    A = add(load(motion.origin_acceleration, b), turning)
+    axes = sensor_axes(s, sensors, motion)
+    P, V, A = motion_at(s, sensors, motion)
     f = (A[0], A[1] + GRAVITY, A[2])
     z[3], z[4], z[5] = into(axes, f)
     for i in range(sensors.path_length[s]):
@@ -108,6 +133,18 @@ def dynamic_rows(s: int, body: Body, sensors: Sensors, motion: Motion, z: Array,
         put(H, 3, column(0, j, t, n), into(axes, by_position))
 
 
+@inlined
+def forward_axis(b: int, motion: Motion) -> Vector:
+    """x axis in the world of the segment behind joint b."""
+    return motion.rotation[b, 0, 0], motion.rotation[b, 1, 0], motion.rotation[b, 2, 0]
+
+
+@inlined
+def yaw_of(c: Vector) -> float:
+    """Heading of a forward axis, rad."""
+    return math.atan2(-c[2], c[0])
+
+
 @kernel
 def yaw_row(b: int, body: Body, motion: Motion, sign: float, row: Array) -> float:
     """Heading of the segment behind joint b, and sign times its derivative added to the row.
@@ -116,11 +153,11 @@ def yaw_row(b: int, body: Body, motion: Motion, sign: float, row: Array) -> floa
     dc/dq_j = a_j x c, so d(yaw)/dq_j = (c_z d_x - c_x d_z) / (c_x^2 + c_z^2) with d = a_j x c.
     """
     n, t = body.parent.size, body.translations
-    c = (motion.rotation[b, 0, 0], motion.rotation[b, 1, 0], motion.rotation[b, 2, 0])
+    c = forward_axis(b, motion)
     flat = c[0] * c[0] + c[2] * c[2] + 1e-12
     j = b
     while j >= t:
         d = cross(load(motion.axis, j), c)
         row[column(0, j, t, n)] += sign * (c[2] * d[0] - c[0] * d[2]) / flat
         j = body.parent[j]
-    return math.atan2(-c[2], c[0])
+    return yaw_of(c)

@@ -1,7 +1,15 @@
 """One step of the filter: predict to the samples' time, then one block per sensor that has a sample."""
 
-import numpy as np
-
+from services.biomech.kernels.companions import (
+    blend,
+    correct,
+    expect_headings,
+    observe,
+    rate_square,
+    take,
+    weigh,
+    wrapped,
+)
 from services.biomech.kernels.compiled import kernel
 from services.biomech.kernels.covariance import (
     innovation_covariance,
@@ -21,13 +29,22 @@ from services.biomech.kernels.measurement import (
     gyro_rows,
     yaw_row,
 )
-from services.biomech.kernels.tables import Array, Body, Columns, Flags, Motion, Noise, Options, Sensors, Update
+from services.biomech.kernels.tables import (
+    Array,
+    Body,
+    Columns,
+    Companions,
+    Flags,
+    Motion,
+    Noise,
+    Options,
+    Sensors,
+    Update,
+)
 
 NOMINAL_DT_S = 0.01
 """s. Virtual measurements are stated for 100 Hz; at other rates their variance is scaled so that the information
 they give per second stays the same."""
-
-TURN = 2.0 * np.pi
 
 
 @kernel
@@ -51,17 +68,22 @@ def fuse(P: Array, complete: int, H: Array, innovation: Array, variance: Array, 
 
 
 @kernel
-def update_sensor(s: int, P: Array, columns: Columns, noise: Noise, update: Update) -> None:
+def update_sensor(s: int, P: Array, columns: Columns, noise: Noise, companions: Companions, update: Update) -> None:
     """Block of six rows: three of the gyroscope, three of the accelerometer."""
     H = update.H[s]
     project(P, H, 0, columns.gyro[s], columns.gyro_count[s], update)
     project(P, H, 3, columns.accel[s], columns.accel_count[s], update)
     fuse(P, columns.complete, H, update.innovation[s], noise.sample[s], update)
+    companions.squared[0, s] = rate_square(update.y)
+    for c in range(companions.x.shape[0]):
+        correct(c, H, companions.innovation[c, s], companions, update)
+        companions.squared[c + 1, s] = rate_square(companions.y)
 
 
 @kernel
 def yaw_rows(
-    P: Array, body: Body, columns: Columns, options: Options, motion: Motion, variance: float, update: Update
+    P: Array, body: Body, columns: Columns, options: Options, motion: Motion, variance: float,
+    companions: Companions, update: Update,
 ) -> int:  # fmt: skip
     """The virtual yaw measurement (Joukov eq. 22) as the first virtual rows; how many there are.
 
@@ -77,16 +99,16 @@ def yaw_rows(
         pelvis = yaw_row(bodies[0], body, motion, -1.0, H[0])
         H[1] = H[0]
         for i in range(2):
-            apart = pelvis - yaw_row(bodies[i + 1], body, motion, 1.0, H[i])
-            e[i] = apart - TURN * np.floor(apart / TURN + 0.5)
+            e[i] = wrapped(pelvis - yaw_row(bodies[i + 1], body, motion, 1.0, H[i]))
     for i in range(rows):
         update.virtual_variance[i] = variance
+    expect_headings(options, companions)
     project(P, H, 0, columns.yaw, columns.yaw.size, update)
     return rows
 
 
 @kernel
-def fuse_virtual(P: Array, complete: int, rows: int, update: Update) -> None:
+def fuse_virtual(P: Array, complete: int, rows: int, companions: Companions, update: Update) -> None:
     """Fuse the virtual rows collected in `update`, and clear them."""
     W, H = fixed(update.W, update.width), fixed(update.virtual_H, update.width)
     for i in range(rows, 6):
@@ -94,7 +116,10 @@ def fuse_virtual(P: Array, complete: int, rows: int, update: Update) -> None:
             W[i, k] = 0.0
         update.virtual_innovation[i] = 0.0
         update.virtual_variance[i] = 1.0
+        companions.virtual_innovation[:, i] = 0.0
     fuse(P, complete, update.virtual_H, update.virtual_innovation, update.virtual_variance, update)
+    for c in range(companions.x.shape[0]):
+        correct(c, update.virtual_H, companions.virtual_innovation[c], companions, update)
     for i in range(6):
         for k in range(H.shape[1]):
             H[i, k] = 0.0
@@ -113,8 +138,9 @@ def copy_row(P: Array, c: int, complete: int, row: Array) -> None:
 
 @kernel
 def rest_rows(
-    x: Array, P: Array, rest: Array, share: float, rows: int, translations: int, complete: int, update: Update
-) -> int:
+    x: Array, P: Array, rest: Array, share: float, rows: int, translations: int, complete: int,
+    companions: Companions, update: Update,
+) -> int:  # fmt: skip
     """Measurements of single states as zero, behind the `rows` there are; six at a time are fused."""
     for order in range(3):
         for j in range(translations, x.shape[1]):
@@ -123,11 +149,13 @@ def rest_rows(
             c = column(order, j, translations, x.shape[1])
             update.virtual_H[rows, c] = 1.0
             update.virtual_innovation[rows] = -x[order, j]
+            for i in range(companions.x.shape[0]):
+                companions.virtual_innovation[i, rows] = -companions.x[i, order, j]
             update.virtual_variance[rows] = rest[order, j] * share
             copy_row(P, c, complete, update.W[rows])
             rows += 1
             if rows == 6:
-                fuse_virtual(P, complete, rows, update)
+                fuse_virtual(P, complete, rows, companions, update)
                 rows = 0
     return rows
 
@@ -135,15 +163,16 @@ def rest_rows(
 @kernel
 def update_virtual(
     x: Array, P: Array, rest: Array, share: float,
-    body: Body, columns: Columns, options: Options, noise: Noise, motion: Motion, update: Update,
+    body: Body, columns: Columns, options: Options, noise: Noise, motion: Motion,
+    companions: Companions, update: Update,
 ) -> None:  # fmt: skip
     """Yaw and rest measurements; `share` makes their information per second the same at every rate."""
     rows = 0
     if options.yaw_mode > 0:
-        rows = yaw_rows(P, body, columns, options, motion, noise.yaw * share, update)
-    rows = rest_rows(x, P, rest, share, rows, body.translations, columns.complete, update)
+        rows = yaw_rows(P, body, columns, options, motion, noise.yaw * share, companions, update)
+    rows = rest_rows(x, P, rest, share, rows, body.translations, columns.complete, companions, update)
     if rows > 0:
-        fuse_virtual(P, columns.complete, rows, update)
+        fuse_virtual(P, columns.complete, rows, companions, update)
 
 
 @kernel
@@ -170,27 +199,34 @@ def linearise(
 def step(
     x: Array, P: Array, dt: float, jerk: Array, samples: Array, fresh: Flags, bias: Array, rest: Array,
     body: Body, sensors: Sensors, columns: Columns, options: Options, noise: Noise, motion: Motion, update: Update,
+    companions: Companions,
 ) -> None:  # fmt: skip
     """Advance the filter by dt >= 0 and fuse one sample of each fresh sensor.
 
     x (3, n), P (N, N) are changed in place. samples (S, 6): rad/s and m/s^2 in the sensor frame, fresh (S,),
     bias (S, 3) rad/s, jerk (n,), rest (3, n): variance at 100 Hz of the pseudo-measurement "is zero" of each
     joint's position, velocity, acceleration; 0 where there is none. All innovations are taken at the predicted state,
-    so that the blocks one after another amount to the joint update.
+    so that the blocks one after another amount to the joint update. Companions come along with x, see `companions.py`.
     """
     if dt > 0.0:
         predict_state(x, dt, jerk)
+        for c in range(companions.x.shape[0]):
+            predict_state(companions.x[c], dt, companions.jerk[c])
         predict_covariance(P, dt, noise.jerk, body.translations, columns.complete, update.width)
+    observe(samples, fresh, bias, body, sensors, options, motion, companions)
     linearise(x, samples, fresh, bias, body, sensors, options, motion, update)
     update.dx[:] = 0.0
     for s in range(sensors.joint.size):
         if fresh[s]:
-            update_sensor(s, P, columns, noise, update)
+            update_sensor(s, P, columns, noise, companions, update)
     if dt > 0.0:
-        update_virtual(x, P, rest, NOMINAL_DT_S / dt, body, columns, options, noise, motion, update)
+        update_virtual(x, P, rest, NOMINAL_DT_S / dt, body, columns, options, noise, motion, companions, update)
     mirror(P)
     n, t = x.shape[1], body.translations
     for j in range(n):
         for order in range(3):
             if j >= t or order == 2:
                 x[order, j] += update.dx[column(order, j, t, n)]
+    take(t, companions)
+    weigh(fresh, dt, companions)
+    blend(x, companions)

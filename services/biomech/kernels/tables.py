@@ -91,6 +91,30 @@ def empty_motion(joints: int) -> Motion:
     return Motion(np.zeros((joints, 3, 3)), a, b, c, d, e, f, g, h)
 
 
+class Companions(NamedTuple):
+    """C further states that live on the covariance and gains of the first: they differ only in the jerk they expect and
+    in the part of a correction that they take. Level 0 below is the filter's own state.
+
+    Which level is believed is decided by evidence, gathered in G groups of sensors.
+    """
+
+    x: Array  # (C, 3, n)
+    jerk: Array  # (C, n) rad/s^3 over the interval that follows
+    part: Array  # (C, 3, n) of the correction that is taken, 1 for all of it
+    group: Indices  # (n,) whose evidence decides over a joint, -1: the filter's own state stands
+    member: Array  # (G, S) 1 where a sensor belongs to a group
+    evidence: Array  # (C, G, 2) mean and power of the difference in squared innovation to the level below
+    weight: Array  # (C, G) 0 to 1, against the level below
+    estimate: Array  # (3, n) the blend of all levels
+    gate: Array  # (3,) memory s, doubt, refusal
+    innovation: Array  # (C, S, 6) scratch
+    heading: Array  # (C, 3) scratch: rad of pelvis, right and left thigh
+    virtual_innovation: Array  # (C, 6) scratch
+    dx: Array  # (C, M) scratch
+    squared: Array  # (C + 1, S) scratch: squared innovations of the gyroscopes in units of their standard deviation
+    y: Array  # (6,) scratch
+
+
 class Update(NamedTuple):
     """Scratch: rows and gains of the measurement update."""
 
@@ -101,6 +125,6 @@ class Update(NamedTuple):
     virtual_variance: Array  # (6,)
     dx: Array  # (M,)
     W: Array  # (6, M)
-    L: Array  # (6, 6)
+    L: Array  # (6, 6), after the whitening its Cholesky factor, the diagonal as the reciprocal
     y: Array  # (6,)
     width: Width  # M

@@ -10,10 +10,10 @@ from services.biomech.kernels.compiled import sources_fingerprint
 
 Function = TypeVar("Function", bound=Callable[..., Any])
 
-_FOLDERS = (Path(__file__).parent, Path(__file__).parent.parent / "rhythm")
-"""The rhythm is compiled into the loops here, so its sources decide as well whether code on disk still holds."""
+_FOLDERS = [Path(__file__).parent.parent / name for name in ("single_joint", "rhythm", "kernels")]
+"""Rhythm and evidence are compiled into the loops here, so their sources decide as well whether code on disk holds."""
 _STAMPS = [sources_fingerprint(folder) for folder in _FOLDERS]
-_STAMP = (_STAMPS[0][0] + _STAMPS[1][0], _STAMPS[0][1] ^ _STAMPS[1][1])
+_STAMP = (sum(stamp[0] for stamp in _STAMPS), sum(stamp[1] for stamp in _STAMPS))
 
 
 def compiled(function: Function) -> Function:

@@ -8,13 +8,14 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from services.biomech.kernels.evidence import bold_share
 from services.biomech.rhythm import joukov, trusted
 from services.biomech.rhythm.memory import Bench, Memory, allocate_memory, prepare_bench
 from services.biomech.rhythm.parameters import JoukovParameters, TrustedParameters
 from services.biomech.single_joint.adaptive_noise import AdaptiveNoise, noise_share
 from services.biomech.single_joint.compiled import compiled
 from services.biomech.single_joint.ekf import VELOCITY, JointSensor, JointState, advance_joint, start_joint
-from services.biomech.single_joint.innovation_gate import InnovationGate, bold_share
+from services.biomech.single_joint.innovation_gate import InnovationGate
 
 FloatArray = NDArray[np.float64]
 
@@ -97,12 +98,12 @@ def _run_trusted(
         jerk = bench.jerk[0]
         squared, log_det = advance_joint(plain, samples[i], dt_s, 0.0, density, variances, offset_m)
         squared_r, log_det_r = advance_joint(rhythmic, samples[i], dt_s, jerk, density, variances, offset_m)
-        weight = bold_share(evidence, squared + log_det, squared_r + log_det_r, dt_s, gate[0], gate[1], gate[2])
+        weight = bold_share(evidence, squared + log_det - squared_r - log_det_r, dt_s, gate[0], gate[1], gate[2])
         weight_bold = 0.0
         if is_adaptive:
             squared, log_det = advance_joint(bold, samples[i], dt_s, jerk, share * density, variances, offset_m)
             weight_bold = weight * bold_share(
-                evidence_bold, squared_r + log_det_r, squared + log_det, dt_s, gate[0], gate[1], gate[2]
+                evidence_bold, squared_r + log_det_r - squared - log_det, dt_s, gate[0], gate[1], gate[2]
             )
         for k in range(3):
             state[i, k] = plain.x[k] + weight * (rhythmic.x[k] - plain.x[k])

@@ -5,10 +5,11 @@ import pytest
 
 from services.bench.joukov.motions import smooth, sweep
 from services.bench.joukov.study import GRID, SWEEPING, TEN, rmse
+from services.biomech.kernels.evidence import bold_share
 from services.biomech.rhythm.parameters import JoukovParameters, TrustedParameters
 from services.biomech.single_joint.adaptive_noise import AdaptiveNoise
 from services.biomech.single_joint.ekf import SingleJointEkf
-from services.biomech.single_joint.innovation_gate import InnovationGate, bold_share
+from services.biomech.single_joint.innovation_gate import InnovationGate
 from services.biomech.single_joint.rhythmic import NO_GATE, track_plain, track_published, track_trusted
 
 DT_S, DENSITY = 0.01, 100.0
@@ -61,7 +62,7 @@ def test_evidence_closes_and_opens_the_gate():
 
     def shares(plain: float, rhythmic: float) -> list[float]:
         return [
-            bold_share(evidence, plain, rhythmic, DT_S, gate.memory_s, gate.doubt, gate.refusal) for _ in range(300)
+            bold_share(evidence, plain - rhythmic, DT_S, gate.memory_s, gate.doubt, gate.refusal) for _ in range(300)
         ]
 
     assert shares(3.0, 3.0) == [0.5] * 300
