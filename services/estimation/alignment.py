@@ -6,7 +6,7 @@ degrees wrong on a recorded walk, with it 13-14. Pelvis: rotation about the vert
 frame comes from the side of the body the sensor is worn on (5 degrees).
 
 Axis signs come from the placement where that is clear, else from the walk: the shank turns fastest while it swings
-forward, and the thigh leads it.
+forward, and the thigh leads it; the foot's toes point down farther than up.
 """
 
 import math
@@ -15,6 +15,7 @@ from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
+from scipy.ndimage import median_filter
 from scipy.signal import butter, lfilter
 
 from schemas.session import Placement, SensorDescription
@@ -97,13 +98,15 @@ def principal_direction(rate: Array, up: Array, moving_rate: float) -> tuple[Arr
     return vectors[:, 1] @ plane, float(max(values[0], 0.0) / values[1]), len(moving)
 
 
-def foot_sign(foot: Array) -> float:
+def foot_sign(foot: Array, rate_hz: float) -> float:
     """Sign for a foot, from its rate (n,) about the axis at hand.
 
-    The foot turns back fast and briefly as the heel lifts and before the toes come down, forward longer and slower:
-    the third moment of the rate about +right is negative.
+    The foot is flat for most of the time, and the toes point farther down as it leaves the ground than up as it comes
+    back: against its median over 2 s, the angle about +right has a negative third moment.
     """
-    return -1.0 if np.mean(foot**3) > 0.0 else 1.0
+    angle = np.cumsum(foot) / rate_hz
+    angle = angle - median_filter(angle, size=max(1, round(2.0 * rate_hz)))
+    return -1.0 if np.mean(angle**3) > 0.0 else 1.0
 
 
 def walking_signs(thigh: Array | None, shank: Array, rate_hz: float) -> tuple[float, float]:
@@ -164,8 +167,8 @@ class AxisSearch:
         self, worn: dict[Segment, tuple[Array, Array, float, int]], thigh: Segment, shank: Segment, foot: Segment
     ) -> dict[Segment, float]:
         if shank not in worn:
-            return {foot: foot_sign(worn[foot][0] @ worn[foot][1])} if foot in worn else {}
-        rate_hz = next(sensor.rate_hz for sensor in self.sensors if sensor.segment is shank)
+            return self._foot_sign(worn, foot)
+        rate_hz = self._rate_hz(shank)
         shank_rate = worn[shank][0] @ worn[shank][1]
         thigh_rate = worn[thigh][0] @ worn[thigh][1] if thigh in worn else None
         if thigh_rate is not None:
@@ -173,6 +176,14 @@ class AxisSearch:
             thigh_rate, shank_rate = thigh_rate[:length], shank_rate[:length]
         signs = walking_signs(thigh_rate, shank_rate, rate_hz)
         return dict(zip((thigh, shank), signs, strict=True))
+
+    def _foot_sign(self, worn: dict[Segment, tuple[Array, Array, float, int]], foot: Segment) -> dict[Segment, float]:
+        if foot not in worn:
+            return {}
+        return {foot: foot_sign(worn[foot][0] @ worn[foot][1], self._rate_hz(foot))}
+
+    def _rate_hz(self, segment: Segment) -> float:
+        return next(sensor.rate_hz for sensor in self.sensors if sensor.segment is segment)
 
     def is_clear(self, axes: dict[int, FlexionAxis], before: dict[int, FlexionAxis]) -> bool:
         """Every leg sensor has moved enough, swung, and kept its axis since the look before.

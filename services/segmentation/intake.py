@@ -8,7 +8,7 @@ from numpy.typing import NDArray
 from schemas.health import Reason, Rejection
 from schemas.kinematics import JointState
 from schemas.rhythm import Rhythm
-from schemas.signals import JOINT_STATE, RHYTHM
+from schemas.signals import JOINT_STATE, RHYTHM, SEGMENT_MOTION
 from services.flow.message import Stream
 from services.flow.node import State
 from services.segmentation.history import DOFS, Batch
@@ -17,6 +17,7 @@ Array = NDArray[np.float64]
 
 JOINTS_FROM = Stream(JOINT_STATE, "estimation")
 RHYTHM_FROM = Stream(RHYTHM, "estimation")
+MOTION_FROM = Stream(SEGMENT_MOTION, "estimation")
 
 MOST_ANGLE, MOST_RATE = 1e4, 200.0
 """rad and rad/s; beyond them a value is no joint coordinate (pelvis_rotation counts whole turns)."""
@@ -54,6 +55,10 @@ class Intake:
         position, velocity, std = tables[:, use]
         phase = self._phase(rhythm, rows)[use]
         return Batch(captured_ns[use], position, phase, std, np.array(joints.valid)), velocity
+
+    def refuse_motion(self, count: int) -> None:
+        """Count samples of lone segments that can not be used."""
+        self._reject(MOTION_FROM, Reason.OUT_OF_RANGE, count)
 
     def _usable(self, captured_ns: NDArray[np.int64], tables: Array) -> NDArray[np.bool_] | slice | None:
         """Which rows to use, None for none. Almost always all of them, which is looked at first."""

@@ -1,22 +1,24 @@
-"""From joint angles and rhythm to gait events and strides."""
+"""From joint angles and rhythm, or from the motion of lone segments, to gait events and strides."""
+
+from dataclasses import replace
 
 from schemas.gait import GaitEvent
 from schemas.health import Rejection
-from schemas.kinematics import JointState
+from schemas.kinematics import JointState, SegmentMotion
 from schemas.rhythm import Rhythm
 from schemas.session import SessionDescription
 from schemas.signals import GAIT_EVENT, STRIDE, Signal
-from schemas.vocabulary import Segment, Side
+from schemas.vocabulary import EventSource
+from services.biomech.event_sources import event_sources, lone_segments, worn_segments
 from services.flow.message import Message, Output, Stream
 from services.flow.node import Node, State
 from services.segmentation.history import History
-from services.segmentation.intake import JOINTS_FROM, RHYTHM_FROM, Intake
-from services.segmentation.leg_kinematics import INDEX, SIDES, leg_motion
-from services.segmentation.pairing import Pairing
+from services.segmentation.intake import JOINTS_FROM, MOTION_FROM, RHYTHM_FROM, Intake
+from services.segmentation.leg_kinematics import SIDES, leg_motion
+from services.segmentation.leg_watch import LegInstant, LegWatch
+from services.segmentation.pairing import Pairing, Together
 from services.segmentation.parameters import SegmentationParameters
-from services.segmentation.shank_swing import ShankSwingDetector
 from services.segmentation.strides import GAP, SENSOR_MISSING, Flaw, StrideAssembler
-from services.segmentation.swing import SwingDetector
 
 SECOND_NS = 1_000_000_000
 DEFAULTS = SegmentationParameters()
@@ -26,70 +28,70 @@ class SegmentationNode:
     """Events as they are recognised, strides once they are complete."""
 
     outputs: tuple[Signal, ...] = (GAIT_EVENT, STRIDE)
-    streams: tuple[Stream, ...] = (JOINTS_FROM, RHYTHM_FROM)
 
     def __init__(self, description: SessionDescription, parameters: SegmentationParameters = DEFAULTS) -> None:
+        worn = worn_segments(description.hubs)
+        sources, with_motion = event_sources(worn), bool(lone_segments(worn))
+        if EventSource.LOWER_BACK in sources.values():
+            parameters = replace(parameters, history_margin_s=parameters.back_history_margin_s)
         self._parameters = parameters
         self._body = description.anthropometry
+        self.streams: tuple[Stream, ...] = (JOINTS_FROM, RHYTHM_FROM, MOTION_FROM)[: 3 if with_motion else 2]
         self._intake = Intake()
-        self._pairing = Pairing()
+        self._pairing = Pairing(with_motion=with_motion)
         self._history = History()
         self._strides = StrideAssembler(parameters, self._body, self._history)
-        worn = {sensor.segment for hub in description.hubs for sensor in hub.sensors}
-        self._seen_by = [_needed(side, worn) for side in SIDES]
-        self._swings = [
-            ShankSwingDetector(parameters) if needed is None else SwingDetector(parameters) for needed in self._seen_by
-        ]
+        self._legs = LegWatch(sources, parameters)
         self._seen = [False, False]
         self._last_ns: int | None = None
         self._still_since_ns: int | None = None
 
     def step(self, message: Message) -> list[Output]:
-        """Take a message of either stream."""
+        """Take a message of any of the streams."""
         payload = message.payload
         if isinstance(payload, JointState) and payload.captured_ns:
-            pairs = self._pairing.add_joints(payload)
+            complete = self._pairing.add_joints(payload)
         elif isinstance(payload, Rhythm) and payload.captured_ns:
-            pairs = self._pairing.add_rhythm(payload)
+            complete = self._pairing.add_rhythm(payload)
+        elif isinstance(payload, SegmentMotion) and payload.captured_ns:
+            complete = self._pairing.add_motion(payload)
         else:
             return []
-        return [output for joints, rhythm in pairs for output in self._take(joints, rhythm)]
+        return [output for together in complete for output in self._take(together)]
 
     def finish(self) -> list[Output]:
         """The strides that still waited."""
-        outputs = [output for joints, rhythm in self._pairing.flush() for output in self._take(joints, rhythm)]
+        outputs = [output for together in self._pairing.flush() for output in self._take(together)]
         now_ns = self._last_ns or 0
         return outputs + [Output(STRIDE, now_ns, stride) for stride in self._strides.release(None)]
 
-    def _take(self, joints: JointState, rhythm: Rhythm | None) -> list[Output]:
-        kept = self._intake.take(joints, rhythm)
+    def _take(self, together: Together) -> list[Output]:
+        joints = together.joints
+        self._intake.refuse_motion(self._legs.lone.take(together.motion))
+        kept = self._intake.take(joints, together.rhythm)
         if kept is None:
             return []
         batch, velocity = kept
         motion = leg_motion(batch.position, velocity, self._body)
-        seen = [_is_seen(side, needed, joints) for side, needed in zip(SIDES, self._seen_by, strict=True)]
+        in_joints = self._legs.in_joints(joints)
         outputs: list[Output] = []
         for i, captured_ns in enumerate(batch.captured_ns.tolist()):
             if self._last_ns is not None and captured_ns // SECOND_NS != self._last_ns // SECOND_NS:
                 self._strides.forget(captured_ns)
             self._history.append(batch, i)
-            outputs += self._sample(captured_ns, motion.shank_rate[i].tolist(), motion.ankle[0, i].tolist(), seen)
+            rates, forward = motion.shank_rate[i].tolist(), motion.ankle[0, i].tolist()
+            outputs += self._sample(captured_ns, self._legs.look(captured_ns, in_joints, rates, forward))
         return outputs
 
-    def _sample(self, captured_ns: int, rates: list[float], forward: list[float], seen: list[bool]) -> list[Output]:
+    def _sample(self, captured_ns: int, legs: list[LegInstant]) -> list[Output]:
         self._note_gap(captured_ns)
-        self._note_sight(captured_ns, seen)
-        self._note_pause(captured_ns, [rate for rate, visible in zip(rates, seen, strict=True) if visible])
-        rotating = [swing.rotating for swing in self._swings]
+        self._note_sight(captured_ns, [leg.is_seen for leg in legs])
+        self._note_pause(captured_ns, legs)
         outputs: list[Output] = []
-        for leg, side in enumerate(SIDES):
-            if not seen[leg]:
-                continue
-            event = self._swings[leg].step(captured_ns, rates[leg], forward[leg], rotating[1 - leg])
-            if event is not None:
-                self._strides.add_event(side, event)
-                payload = GaitEvent(kind=event.kind, side=side, captured_ns=event.captured_ns, time_std_s=event.std_s)
-                outputs.append(Output(GAIT_EVENT, captured_ns, payload))
+        for side, event in self._legs.detect(captured_ns, legs):
+            self._strides.add_event(side, event)
+            payload = GaitEvent(kind=event.kind, side=side, captured_ns=event.captured_ns, time_std_s=event.std_s)
+            outputs.append(Output(GAIT_EVENT, captured_ns, payload))
         self._last_ns = captured_ns
         return outputs + [Output(STRIDE, captured_ns, stride) for stride in self._strides.release(captured_ns)]
 
@@ -97,9 +99,9 @@ class SegmentationNode:
         last_ns = self._last_ns
         if last_ns is None or captured_ns - last_ns <= self._parameters.longest_gap_s * 1e9:
             return
-        for side, swing in zip(SIDES, self._swings, strict=True):
+        for leg, side in enumerate(SIDES):
             self._strides.add_flaw(side, Flaw(last_ns, captured_ns, GAP))
-            swing.interrupt()
+            self._legs.interrupt(leg)
 
     def _note_sight(self, captured_ns: int, seen: list[bool]) -> None:
         for leg, side in enumerate(SIDES):
@@ -108,13 +110,16 @@ class SegmentationNode:
             flaws = self._strides.legs[side].flaws
             if not seen[leg]:
                 self._strides.add_flaw(side, Flaw(captured_ns, None, SENSOR_MISSING))
-                self._swings[leg].interrupt()
+                self._legs.interrupt(leg)
             elif flaws and flaws[-1].until_ns is None:
                 flaws[-1].until_ns = captured_ns
         self._seen = seen
 
-    def _note_pause(self, captured_ns: int, rates: list[float]) -> None:
-        if any(abs(rate) > self._parameters.pause_rate for rate in rates):
+    def _note_pause(self, captured_ns: int, legs: list[LegInstant]) -> None:
+        visible = [leg for leg in legs if leg.is_seen]
+        if visible and all(leg.activity is None for leg in visible):
+            return
+        if any(leg.activity is not None and leg.activity > self._parameters.pause_rate for leg in visible):
             self._still_since_ns = None
         elif self._still_since_ns is None:
             self._still_since_ns = captured_ns
@@ -131,7 +136,7 @@ class SegmentationNode:
             "pairing": self._pairing.snapshot(),
             "history": self._history.snapshot(),
             "strides": self._strides.snapshot(),
-            "swings": [swing.snapshot() for swing in self._swings],
+            "legs": self._legs.snapshot(),
             "seen": self._seen,
             "last_ns": self._last_ns,
             "still_since_ns": self._still_since_ns,
@@ -143,26 +148,11 @@ class SegmentationNode:
         self._pairing.restore(state["pairing"])
         self._history.restore(state["history"])
         self._strides.restore(state["strides"])
-        for swing, kept in zip(self._swings, state["swings"], strict=True):
-            swing.restore(kept)
+        self._legs.restore(state["legs"])
         self._seen = list(state["seen"])
         self._last_ns = state["last_ns"]
         self._still_since_ns = state["still_since_ns"]
         self._intake.restore(state["intake"])
-
-
-def _needed(side: Side, worn: set[Segment]) -> list[int] | None:
-    """Coordinates that are valid while the whole leg is seen; None for a leg that does not wear all its sensors."""
-    if not {Segment.PELVIS, Segment(f"thigh_{side}"), Segment(f"shank_{side}")} <= worn:
-        return None
-    return [INDEX[name] for name in ("pelvis_tilt", f"hip_flexion_{side}", f"knee_flexion_{side}")]
-
-
-def _is_seen(side: Side, needed: list[int] | None, joints: JointState) -> bool:
-    """Either the whole leg is seen or, where it never can be, its shank."""
-    if needed is None:
-        return Segment(f"shank_{side}") in joints.observed
-    return all(joints.valid[index] for index in needed)
 
 
 def build(description: SessionDescription) -> Node:

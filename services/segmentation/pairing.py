@@ -1,61 +1,88 @@
-"""Brings each joint_state message together with the rhythm of the same samples."""
+"""Brings each joint_state message together with what else is known of the same samples."""
 
 from collections import deque
+from typing import NamedTuple, TypeVar
 
-from schemas.kinematics import JointState
+from schemas.kinematics import JointState, SegmentMotion
 from schemas.rhythm import Rhythm
 from services.flow.node import State
 
+Accompanying = TypeVar("Accompanying", Rhythm, SegmentMotion)
+
+
+class Together(NamedTuple):
+    """Messages of the same samples; what never came is None."""
+
+    joints: JointState
+    rhythm: Rhythm | None
+    motion: SegmentMotion | None
+
 
 class Pairing:
-    """Holds whichever of the two comes first.
+    """Holds whichever comes first.
 
-    Both streams are in order, so a message whose partner's stream has gone past it will never get a partner.
-    The pairs come out in the same order however the streams interleave.
+    All streams are in order, so a message whose partner's stream has gone past it will never get that partner.
+    What belongs together comes out in the same order however the streams interleave.
     """
 
-    def __init__(self) -> None:
+    def __init__(self, *, with_motion: bool = False) -> None:
         self._joints: deque[JointState] = deque()
         self._rhythms: deque[Rhythm] = deque()
+        self._motions: deque[SegmentMotion] = deque()
+        self._with_motion = with_motion
 
-    def add_joints(self, joints: JointState) -> list[tuple[JointState, Rhythm | None]]:
-        """Take a non-empty batch of joint states; the pairs that are now complete."""
+    def add_joints(self, joints: JointState) -> list[Together]:
+        """Take a non-empty batch of joint states; what is now complete."""
         self._joints.append(joints)
         return self._drain()
 
-    def add_rhythm(self, rhythm: Rhythm) -> list[tuple[JointState, Rhythm | None]]:
-        """Take a non-empty batch of the rhythm; the pairs that are now complete."""
+    def add_rhythm(self, rhythm: Rhythm) -> list[Together]:
+        """Take a non-empty batch of the rhythm; what is now complete."""
         self._rhythms.append(rhythm)
         return self._drain()
 
-    def flush(self) -> list[tuple[JointState, Rhythm | None]]:
-        """Both streams have ended: what is left has no partner."""
-        self._rhythms.clear()
-        rest: list[tuple[JointState, Rhythm | None]] = [(joints, None) for joints in self._joints]
-        self._joints.clear()
-        return rest
+    def add_motion(self, motion: SegmentMotion) -> list[Together]:
+        """Take a non-empty batch of lone segments' motion; what is now complete."""
+        self._motions.append(motion)
+        return self._drain()
 
-    def _drain(self) -> list[tuple[JointState, Rhythm | None]]:
-        pairs: list[tuple[JointState, Rhythm | None]] = []
-        while self._joints and self._rhythms:
-            joints, rhythm = self._joints[0], self._rhythms[0]
-            if joints.captured_ns == rhythm.captured_ns:
-                self._rhythms.popleft()
-                pairs.append((self._joints.popleft(), rhythm))
-            elif rhythm.captured_ns[-1] <= joints.captured_ns[-1]:
-                self._rhythms.popleft()
-            else:
-                pairs.append((self._joints.popleft(), None))
-        return pairs
+    def flush(self) -> list[Together]:
+        """All streams have ended: joint states get the partners that came."""
+        return self._drain(ended=True)
+
+    def _drain(self, *, ended: bool = False) -> list[Together]:
+        complete: list[Together] = []
+        while self._joints:
+            joints = self._joints[0]
+            _drop_passed(self._rhythms, joints)
+            _drop_passed(self._motions, joints)
+            waits = not self._rhythms or (self._with_motion and not self._motions)
+            if waits and not ended:
+                break
+            self._joints.popleft()
+            complete.append(Together(joints, _partner(self._rhythms, joints), _partner(self._motions, joints)))
+        return complete
 
     def snapshot(self) -> State:
         """The messages that wait."""
         return {
             "joints": [joints.model_dump() for joints in self._joints],
             "rhythms": [rhythm.model_dump() for rhythm in self._rhythms],
+            "motions": [motion.model_dump() for motion in self._motions],
         }
 
     def restore(self, state: State) -> None:
         """Inverse of `snapshot`."""
         self._joints = deque(JointState.model_validate(joints) for joints in state["joints"])
         self._rhythms = deque(Rhythm.model_validate(rhythm) for rhythm in state["rhythms"])
+        self._motions = deque(SegmentMotion.model_validate(motion) for motion in state["motions"])
+
+
+def _drop_passed(queue: deque[Rhythm] | deque[SegmentMotion], joints: JointState) -> None:
+    """Drop what ends no later than the joint states and is not theirs: its own never came."""
+    while queue and queue[0].captured_ns != joints.captured_ns and queue[0].captured_ns[-1] <= joints.captured_ns[-1]:
+        queue.popleft()
+
+
+def _partner(queue: deque[Accompanying], joints: JointState) -> Accompanying | None:
+    return queue.popleft() if queue and queue[0].captured_ns == joints.captured_ns else None

@@ -38,6 +38,51 @@ class SegmentationParameters:
     shank_toe_off_std_s: float = 0.015
     """s, the same for a toe-off."""
 
+    foot_contact_after_swing_s: float = 0.05
+    """s from the end of a foot's forward rotation to contact, where the foot alone is known: reviewed movements of one
+    adult (0.045), and the stroke survivor's shanks (0.055)."""
+    foot_toe_off_before_swing_s: float = 0.04
+    """s from toe-off to the start of that rotation; likewise (0.03 and 0.05)."""
+    foot_contact_std_s: float = 0.025
+    """s, one standard deviation of a contact timed by the foot alone; 9 to 18 ms in the same people, and as much from
+    one person to another."""
+    foot_toe_off_std_s: float = 0.025
+    """s, the same for a toe-off."""
+
+    back_smoothing_s: float = 0.2
+    """s to each side over which the acceleration of the lower back is smoothed; keeps the step, not its impacts."""
+    back_climb_floor: float = 0.6
+    """m/s^2 by which the smoothed upward acceleration must rise and fall in a step; sitting down makes more, but not
+    several times in a row."""
+    back_climb_fraction: float = 0.25
+    """share of the person's own median climb that a climb must reach."""
+    back_climb_memory: int = 7
+    """climbs whose median is the person's own."""
+    back_rise_s: float = 0.25
+    """s before a top in which its steepest rise is looked for."""
+    back_contact_after_rise_s: float = 0.065
+    """s from the steepest rise to contact: mean of three people (0.10, 0.06 and 0.04)."""
+    back_contact_std_s: float = 0.04
+    """s, one standard deviation of a contact: 25 ms within those people, 30 between them."""
+    back_side_edge_s: float = 0.05
+    """s around a contact that tell nothing of its side."""
+    back_side_before_s: float = 0.3
+    """s before a contact in which the body stands on the other foot."""
+    back_side_after_s: float = 0.2
+    """s after a contact in which the body comes to stand on this foot."""
+    back_memory_s: float = 1.0
+    """s of smoothed acceleration kept."""
+    back_shortest_step_s: float = 0.25
+    """s; two contacts closer than this are one."""
+    back_longest_step_s: float = 1.5
+    """s; contacts further apart are not of one run."""
+    back_uneven: float = 1.8
+    """ratio of a step to the median of the run, beyond which it begins another one."""
+    back_step_memory: int = 5
+    """steps whose median is the run's."""
+    back_fewest_contacts: int = 3
+    """contacts in an even run from which on it is walking."""
+
     swing_angle_floor: float = 0.15
     """rad of forward shank rotation that no swing stays below; smaller movements are shuffles (proposal)."""
     swing_angle_fraction: float = 0.2
@@ -86,3 +131,5 @@ class SegmentationParameters:
     rotation between its own contact and the other foot's. Optical means of three people: 0.10, 0.06, 0.08."""
     history_margin_s: float = 0.5
     """s of joint angles kept before the last contact; a contact is recognised at most 0.35 s late."""
+    back_history_margin_s: float = 4.0
+    """s, the same where the lower back tells contacts: the first of a run waits for two more."""

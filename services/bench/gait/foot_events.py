@@ -16,8 +16,8 @@ from services.bench.scoreboard import Row, informative
 from services.ingest.data import find_data
 from services.ingest.errors import SourceError
 from services.ingest.table import CsvFormat, read_table
+from services.segmentation.lone_swing import ShankSwingDetector
 from services.segmentation.parameters import SegmentationParameters
-from services.segmentation.shank_swing import ShankSwingDetector
 
 Array = NDArray[np.float64]
 

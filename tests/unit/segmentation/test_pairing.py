@@ -3,7 +3,7 @@ import random
 
 import pytest
 
-from schemas.kinematics import JointState
+from schemas.kinematics import JointState, SegmentMotion
 from schemas.rhythm import Rhythm
 from services.segmentation.pairing import Pairing
 
@@ -22,7 +22,7 @@ def fed(pairing: Pairing, messages) -> list[tuple[list[int], bool]]:
         add = pairing.add_joints if isinstance(message, JointState) else pairing.add_rhythm
         pairs += add(message)
     pairs += pairing.flush()
-    return [(j.captured_ns, r is not None and r.captured_ns == j.captured_ns) for j, r in pairs]
+    return [(j.captured_ns, r is not None and r.captured_ns == j.captured_ns) for j, r, _ in pairs]
 
 
 def shuffled(first: list, second: list, seed: int) -> list:
@@ -70,8 +70,42 @@ def test_snapshot_keeps_what_waits():
     waiting.add_joints(full)
     resumed = Pairing()
     resumed.restore(json.loads(json.dumps(waiting.snapshot())))
-    [(kept, partner)] = resumed.add_rhythm(
+    [(kept, partner, _)] = resumed.add_rhythm(
         Rhythm(captured_ns=[5], phase=[1], frequency=[1], quality=[1], locked=[True])
     )
     assert kept == full
     assert partner is not None
+
+
+def motion(*captured_ns: int) -> SegmentMotion:
+    return SegmentMotion(captured_ns=list(captured_ns), segments=[])
+
+
+MOTIONS = [motion(0, 1), motion(2, 3), motion(6, 7), motion(9)]
+
+
+@pytest.mark.parametrize("seed", range(20))
+def test_three_streams_come_together_however_they_interleave(seed):
+    pairing, complete = Pairing(with_motion=True), []
+    for message in shuffled(shuffled(JOINTS, RHYTHMS, seed), MOTIONS, seed + 100):
+        if isinstance(message, JointState):
+            complete += pairing.add_joints(message)
+        elif isinstance(message, Rhythm):
+            complete += pairing.add_rhythm(message)
+        else:
+            complete += pairing.add_motion(message)
+    complete += pairing.flush()
+    partners = [(t.joints.captured_ns, t.rhythm is not None, t.motion is not None) for t in complete]
+    moved = [True, True, False, True, True]
+    assert partners == [(ns, found, found_too) for (ns, found), found_too in zip(EXPECTED, moved, strict=True)]
+
+
+def test_motion_that_waits_survives_a_snapshot():
+    waiting = Pairing(with_motion=True)
+    waiting.add_motion(motion(4, 5))
+    waiting.add_rhythm(Rhythm(captured_ns=[4, 5], phase=[1, 2], frequency=[1, 1], quality=[1, 1], locked=[True, True]))
+    resumed = Pairing(with_motion=True)
+    resumed.restore(json.loads(json.dumps(waiting.snapshot())))
+    [together] = resumed.add_joints(joints(4, 5))
+    assert together.motion == motion(4, 5)
+    assert together.rhythm is not None

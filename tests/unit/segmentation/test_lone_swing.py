@@ -10,9 +10,9 @@ from schemas.kinematics import JointState
 from schemas.vocabulary import LOWER_BODY, GaitEventKind, Segment, Side
 from services.bench.gait.joint_walks import joint_walk
 from services.flow.message import Message
+from services.segmentation.lone_swing import ShankSwingDetector
 from services.segmentation.node import build
 from services.segmentation.parameters import SegmentationParameters
-from services.segmentation.shank_swing import ShankSwingDetector
 from services.segmentation.strides import SENSOR_MISSING
 
 PARAMETERS = SegmentationParameters()
