@@ -4,6 +4,7 @@ from collections.abc import Callable
 from dataclasses import dataclass
 
 from schemas.gait import Stride
+from schemas.rhythm import RhythmKind
 
 STRIDE_DEFINITION = "A stride lasts from one initial contact of a foot to the next initial contact of the same foot."
 
@@ -171,5 +172,57 @@ COUNTS: tuple[Definition, ...] = (
     Definition(REJECTED, "1", True, "Number of strides that do not count because something about them is wrong."),
 )
 
-METRICS: tuple[Definition, ...] = (*STRIDE_METRICS, *RATIOS, *VARIABILITY, *COUNTS)
+SIDE_DISTANCE = Definition(
+    "rhythm_side_distance",
+    "rad",
+    False,
+    "Root mean square difference of the learned hip and knee flexion of the two legs over the stride, each about its "
+    "mean, after the one shift in time that makes it smallest.",
+)
+SIDE_SHAPE = Definition(
+    "rhythm_side_shape",
+    "1",
+    False,
+    "The same after one leg was scaled to the other by one factor, as a share of its size: 0 equal, 1 unlike.",
+)
+SIDE_TIMING = Definition(
+    "rhythm_side_timing",
+    "1",
+    False,
+    "By how much of a stride the right leg follows the left by more than half a stride; negative: by less.",
+)
+
+
+def _compared_with(name: str, whose: str) -> tuple[Definition, Definition]:
+    distance = Definition(
+        f"rhythm_distance_{name}",
+        "rad",
+        True,
+        f"Root mean square difference of the leg's learned hip and knee flexion from {whose} over the stride, each "
+        "about its mean, after the one shift in time that makes it smallest.",
+    )
+    shape = Definition(
+        f"rhythm_shape_{name}",
+        "1",
+        True,
+        f"The same after {whose} was scaled by one factor, as a share of its size: 0 equal, 1 unlike.",
+    )
+    return distance, shape
+
+
+COMPARED_WITH: dict[RhythmKind, tuple[Definition, Definition]] = {
+    "previous trial": _compared_with("previous_trial", "the previous trial's"),
+    "previous visit": _compared_with("previous_visit", "the previous visit's"),
+    "exemplar": _compared_with("exemplar", "the exemplar's"),
+}
+"""Distance and shape distance from each kind of known rhythm; in a message only where one of that kind is known."""
+
+RHYTHMS: tuple[Definition, ...] = (
+    SIDE_DISTANCE,
+    SIDE_SHAPE,
+    SIDE_TIMING,
+    *(definition for pair in COMPARED_WITH.values() for definition in pair),
+)
+
+METRICS: tuple[Definition, ...] = (*STRIDE_METRICS, *RATIOS, *VARIABILITY, *COUNTS, *RHYTHMS)
 """All metrics, in the order of every message."""

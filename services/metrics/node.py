@@ -1,14 +1,16 @@
-"""From strides to what the session amounts to."""
+"""From strides, and from what the rhythm learned of them, to what the session amounts to."""
 
 from schemas.gait import Stride
 from schemas.health import Rejection
 from schemas.metrics import SessionMetrics
+from schemas.rhythm import LearnedRhythm
 from schemas.session import SessionDescription
-from schemas.signals import METRICS, STRIDE, Signal
+from schemas.signals import LEARNED_RHYTHM, METRICS, STRIDE, Signal
 from schemas.vocabulary import Side
 from services.flow.message import Message, Output, Stream
 from services.flow.node import Node, State
 from services.metrics.parameters import MetricsParameters
+from services.metrics.rhythms import rhythm_metrics
 from services.metrics.session_totals import SessionTotals
 
 DEFAULTS = MetricsParameters()
@@ -17,25 +19,30 @@ DEFAULTS = MetricsParameters()
 class MetricsNode:
     """Metrics after each stride of both feet, and the final ones at the end.
 
-    When only one foot is seen, they come after every second stride of that foot.
+    When only one foot is seen, they come after every second stride of that foot. Learned rhythms are compared in the
+    final ones only: until both streams have ended, it depends on chance which of them has come further.
     """
 
     outputs: tuple[Signal, ...] = (METRICS,)
-    streams: tuple[Stream, ...] = (Stream(STRIDE, "segmentation"),)
+    streams: tuple[Stream, ...] = (Stream(STRIDE, "segmentation"), Stream(LEARNED_RHYTHM, "estimation"))
 
     def __init__(
         self,
-        description: SessionDescription,  # noqa: ARG002 - every node is built from the description
+        description: SessionDescription,
         parameters: MetricsParameters = DEFAULTS,
     ) -> None:
         self._parameters = parameters
+        self._known = description.known_rhythms
+        self._learned: LearnedRhythm | None = None
         self._totals = SessionTotals()
         self._unreported = dict.fromkeys(Side, 0)
         self._captured_ns = 0
 
     def step(self, message: Message) -> list[Output]:
-        """Take a stride."""
+        """Take a stride, or what the rhythm has learned so far."""
         stride = message.payload
+        if isinstance(stride, LearnedRhythm):
+            self._learned = stride
         if not isinstance(stride, Stride):
             return []
         self._captured_ns = max(self._captured_ns, message.envelope.captured_ns)
@@ -54,7 +61,10 @@ class MetricsNode:
         payload = SessionMetrics(
             captured_ns=self._captured_ns,
             final=final,
-            metrics=self._totals.metrics(self._parameters),
+            metrics=[
+                *self._totals.metrics(self._parameters),
+                *rhythm_metrics(self._learned if final else None, self._known, final=final),
+            ],
             curves=self._totals.curves(self._parameters),
         )
         return Output(METRICS, self._captured_ns, payload)
@@ -69,6 +79,7 @@ class MetricsNode:
             "totals": self._totals.snapshot(),
             "unreported": {side.value: number for side, number in self._unreported.items()},
             "captured_ns": self._captured_ns,
+            "learned": None if self._learned is None else self._learned.model_dump(mode="json"),
         }
 
     def restore(self, state: State) -> None:
@@ -76,6 +87,8 @@ class MetricsNode:
         self._totals.restore(state["totals"])
         self._unreported = {side: state["unreported"][side.value] for side in Side}
         self._captured_ns = state["captured_ns"]
+        learned = state["learned"]
+        self._learned = None if learned is None else LearnedRhythm.model_validate(learned)
 
 
 def build(description: SessionDescription) -> Node:
