@@ -2,51 +2,73 @@
 
 from collections.abc import Mapping, Sequence
 from html import escape
-from math import floor, log10
+from itertools import groupby
+from math import floor, isfinite, log10
 
-WIDTH, HEIGHT = 640, 400
-LEFT, RIGHT, TOP, BOTTOM = 64, 170, 40, 52
-COLOURS = ("#555555", "#c0392b", "#1f6fb2", "#2e8b57", "#8e5ea2", "#d98c1f")
+WIDTH, HEIGHT = 720, 400
+LEFT, RIGHT, TOP, BOTTOM = 72, 200, 44, 56
+COLOURS = ("#4d4d4d", "#c0392b", "#1f6fb2", "#2e8b57", "#8e5ea2", "#d98c1f")
+FEW = 25
+"""Points of a line up to which each is marked."""
+DASHED = "6 4"
 
 Points = Sequence[tuple[float, float]]
 
 
-def line_chart(title: str, x_label: str, y_label: str, lines: Mapping[str, Points], *, log_x: bool = False) -> str:
+def line_chart(
+    title: str,
+    x_label: str,
+    y_label: str,
+    lines: Mapping[str, Points],
+    *,
+    log_x: bool = False,
+    from_zero: bool = True,
+    level: tuple[str, float] | None = None,
+) -> str:
     """An SVG document with one line per entry of `lines`.
 
     Args:
         title: above the chart.
         x_label: below it, with unit.
         y_label: beside it, with unit.
-        lines: points (x, y) by name; the names make the legend.
+        lines: points (x, y) by name; the names make the legend. Where y is not finite, the line is interrupted.
         log_x: decades on the x axis; x > 0 then.
+        from_zero: whether the y axis begins at zero.
+        level: name and y of a dashed level across the chart.
 
     Raises:
         ValueError: there is nothing to draw.
     """
-    points = [(log10(x) if log_x else x, y) for line in lines.values() for x, y in line]
+    points = [(log10(x) if log_x else x, y) for line in lines.values() for x, y in line if isfinite(y)]
     if not points:
         raise ValueError("a chart needs at least one point")
-    x_ticks, y_ticks = _ticks([x for x, _ in points], whole=log_x), _ticks([0.0, *(y for _, y in points)])
+    heights = [y for _, y in points] + ([0.0] if from_zero else []) + ([] if level is None else [level[1]])
+    x_ticks, y_ticks = _ticks([x for x, _ in points], whole=log_x), _ticks(heights)
 
     def place(x: float, y: float) -> tuple[float, float]:
         across = (x - x_ticks[0]) / (x_ticks[-1] - x_ticks[0])
         up = (y - y_ticks[0]) / (y_ticks[-1] - y_ticks[0])
         return LEFT + across * (WIDTH - LEFT - RIGHT), HEIGHT - BOTTOM - up * (HEIGHT - TOP - BOTTOM)
 
-    parts = [_text(LEFT, TOP - 18, title, size=15)]
+    parts = [_text(LEFT, TOP - 20, title, size=15)]
     for tick in x_ticks:
         x, y = place(tick, y_ticks[0])
-        parts += [_rule(x, y, x, TOP), _text(x, y + 18, f"1e{tick:g}" if log_x else f"{tick:g}", anchor="middle")]
+        parts += [_rule(x, y, x, TOP), _power(x, y + 19, tick) if log_x else _text(x, y + 19, f"{tick:g}", "middle")]
     for tick in y_ticks:
         x, y = place(x_ticks[0], tick)
-        parts += [_rule(x, y, WIDTH - RIGHT, y), _text(x - 8, y + 4, f"{tick:g}", anchor="end")]
+        parts += [_rule(x, y, WIDTH - RIGHT, y), _text(x - 8, y + 4, f"{tick:g}", "end")]
+    if level is not None:
+        y = place(x_ticks[0], level[1])[1]
+        parts.append(_polyline([(LEFT, y), (WIDTH - RIGHT, y)], "#999999", DASHED))
+        parts += _legend("#999999", level[0], len(lines), DASHED)
     for i, (name, line) in enumerate(lines.items()):
-        drawn = [place(log10(x) if log_x else x, y) for x, y in line]
-        parts += _line(drawn, COLOURS[i % len(COLOURS)], name, TOP + 8 + 20 * i)
-    parts.append(_text((LEFT + WIDTH - RIGHT) / 2, HEIGHT - 14, x_label, anchor="middle"))
-    parts.append(f'<g transform="rotate(-90 16 {HEIGHT / 2:g})">{_text(16, HEIGHT / 2, y_label, anchor="middle")}</g>')
-    head = f'<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 {WIDTH} {HEIGHT}" font-family="sans-serif">'
+        drawn = [place(log10(x) if log_x else x, y) if isfinite(y) else None for x, y in line]
+        parts += _line(drawn, COLOURS[i % len(COLOURS)]) + _legend(COLOURS[i % len(COLOURS)], name, i)
+    parts.append(_text((LEFT + WIDTH - RIGHT) / 2, HEIGHT - 14, x_label, "middle"))
+    middle = (TOP + HEIGHT - BOTTOM) / 2
+    parts.append(f'<g transform="rotate(-90 18 {middle:g})">{_text(18, middle, y_label, "middle")}</g>')
+    size = f'width="{WIDTH}" height="{HEIGHT}" viewBox="0 0 {WIDTH} {HEIGHT}"'
+    head = f'<svg xmlns="http://www.w3.org/2000/svg" {size} font-family="sans-serif">'
     return "\n".join([head, f'<rect width="{WIDTH}" height="{HEIGHT}" fill="white"/>', *parts, "</svg>", ""])
 
 
@@ -66,20 +88,34 @@ def _ticks(values: Sequence[float], *, whole: bool = False) -> list[float]:
     return [round(k * step, 12) for k in range(first, last + 1)]
 
 
-def _line(points: Sequence[tuple[float, float]], colour: str, name: str, legend_y: float) -> list[str]:
+def _line(points: Sequence[tuple[float, float] | None], colour: str) -> list[str]:
+    pieces = [[point for point in piece if point] for there, piece in groupby(points, bool) if there]
+    parts = [_polyline(piece, colour) for piece in pieces]
+    if len(points) <= FEW:
+        parts += [f'<circle cx="{x:.1f}" cy="{y:.1f}" r="2.8" fill="{colour}"/>' for piece in pieces for x, y in piece]
+    return parts
+
+
+def _polyline(points: Sequence[tuple[float, float]], colour: str, dashes: str = "") -> str:
     path = " ".join(f"{x:.1f},{y:.1f}" for x, y in points)
-    x = WIDTH - RIGHT + 12
-    return [
-        f'<polyline points="{path}" fill="none" stroke="{colour}" stroke-width="2"/>',
-        *(f'<circle cx="{px:.1f}" cy="{py:.1f}" r="2.5" fill="{colour}"/>' for px, py in points),
-        f'<line x1="{x}" y1="{legend_y:g}" x2="{x + 18}" y2="{legend_y:g}" stroke="{colour}" stroke-width="2"/>',
-        _text(x + 24, legend_y + 4, name),
-    ]
+    style = f' stroke-dasharray="{dashes}"' if dashes else ""
+    return f'<polyline points="{path}" fill="none" stroke="{colour}" stroke-width="1.8"{style}/>'
 
 
-def _rule(x1: float, y1: float, x2: float, y2: float) -> str:
-    return f'<line x1="{x1:.1f}" y1="{y1:.1f}" x2="{x2:.1f}" y2="{y2:.1f}" stroke="#dddddd"/>'
+def _legend(colour: str, name: str, place: int, dashes: str = "") -> list[str]:
+    x, y = WIDTH - RIGHT + 14, TOP + 8 + 20 * place
+    style = f'stroke="{colour}" stroke-width="2" stroke-dasharray="{dashes or "none"}"'
+    return [_rule(x, y, x + 20, y, style), _text(x + 27, y + 4, name)]
 
 
-def _text(x: float, y: float, text: str, *, anchor: str = "start", size: int = 12) -> str:
+def _rule(x1: float, y1: float, x2: float, y2: float, style: str = 'stroke="#dddddd"') -> str:
+    return f'<line x1="{x1:.1f}" y1="{y1:.1f}" x2="{x2:.1f}" y2="{y2:.1f}" {style}/>'
+
+
+def _power(x: float, y: float, exponent: float) -> str:
+    raised = f'<tspan dy="-5" font-size="9">{exponent:g}</tspan>'
+    return f'<text x="{x:.1f}" y="{y:.1f}" font-size="12" text-anchor="middle">10{raised}</text>'
+
+
+def _text(x: float, y: float, text: str, anchor: str = "start", *, size: int = 12) -> str:
     return f'<text x="{x:.1f}" y="{y:.1f}" font-size="{size}" text-anchor="{anchor}">{escape(text)}</text>'

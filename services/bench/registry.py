@@ -34,13 +34,17 @@ def rhythm(json_path: Path | None = None) -> Scoreboard:
     return run(json_path)
 
 
-def joukov(json_path: Path | None = None, motions: str = "100", report: Path | None = None) -> Scoreboard:
-    """The Rhythmic EKF against the plain one: the published simulation and the curve over the process noise."""
-    from services.bench.joukov.board import run
+def joukov(json_path: Path | None = None, *subject: str, report: Path | None = None) -> Scoreboard:
+    """The Rhythmic EKF's paper, repeated: how many motions, and parts of it, e.g. 100 tables; all without a part."""
+    from services.bench.joukov.board import MOTIONS, PARTS, run
 
-    if not motions.isdecimal():
-        raise ValueError(f"joukov takes a number of motions, e.g. 100, not {motions!r}")
-    return run(json_path, int(motions), report)
+    numbers = [word for word in subject if word.isdecimal()]
+    parts = [word for word in subject if not word.isdecimal()]
+    unknown = [part for part in parts if part not in PARTS]
+    if unknown or len(numbers) > 1:
+        known = ", ".join(PARTS)
+        raise ValueError(f"joukov takes a number of motions and parts of {known}, not {' '.join(subject)!r}")
+    return run(json_path, int(numbers[0]) if numbers else MOTIONS, parts, report)
 
 
 def recovery(json_path: Path | None = None) -> Scoreboard:

@@ -24,7 +24,7 @@ Source = Annotated[
     typer.Argument(
         metavar="PATH",
         help="A folder with a recording.toml, an .mcap file of Ambula, the name of a shipped manifest"
-        " (neura_s02_walk), or synthetic:walk?speed=1.1&seed=3",
+        " (neura_s02_walk), synthetic:walk?speed=1.1&seed=3 or synthetic:march?metronome=70&seed=3",
     ),
 ]
 Estimator = Annotated[
@@ -118,21 +118,25 @@ def run(
 def synth(
     folder: Annotated[Path, typer.Option("--out", help="folder for the recording; made when it is missing")],
     walk: Annotated[str, typer.Option(help="as in a source name, e.g. speed=1.3&asymmetry=0.2&seed=7")] = "",
+    march: Annotated[str | None, typer.Option(help="march on the spot instead, e.g. metronome=70&seed=7")] = None,
     straight: Straight = None,
 ) -> None:
-    """Write a synthetic walk with its truth as a recording folder that replays like any other."""
+    """Write a synthetic walk or march with its truth as a recording folder that replays like any other."""
     from services.ingest.errors import SourceError
     from services.ingest.synthetic import write_recording
 
     with told(SourceError, OSError):
-        write_recording(folder, walk, _walk_path(straight) or "turning")
+        options, motion = (walk, "walk") if march is None else (march, "march")
+        write_recording(folder, options, _walk_path(straight) or "turning", motion=motion)
     out.print(f"written: {folder}/recording.toml and its CSV files; try: ambula run {folder} --out out")
 
 
 @app.command(context_settings={"ignore_unknown_options": True})
 def bench(
     name: Annotated[str | None, typer.Argument(help="which scoreboard; without a name they are listed")] = None,
-    subject: Annotated[str | None, typer.Argument(help="what to measure it on, e.g. neura")] = None,
+    subject: Annotated[
+        list[str] | None, typer.Argument(help="what to measure it on, e.g. neura, or 100 tables")
+    ] = None,
     json_path: Annotated[Path | None, typer.Option("--json", help="also write the rows to this file")] = None,
     details: Annotated[bool, typer.Option("--all", help="print every row, e.g. each side by itself")] = False,
     report: Annotated[Path | None, typer.Option(help="folder for a report with charts, where there is one")] = None,
@@ -151,7 +155,12 @@ def bench(
         if report is not None and "report" not in inspect.signature(board).parameters:
             raise ValueError(f"{name} writes no report; leave --report out, --json writes its rows")
         options = {} if report is None else {"report": report}
-        result = board(json_path, *([] if subject is None else [subject]), **options)
+        subjects = subject or []
+        try:
+            inspect.signature(board).bind(json_path, *subjects, **options)
+        except TypeError:
+            raise ValueError(f"{name} cannot be measured on {' '.join(subjects)!r}; try ambula bench {name}") from None
+        result = board(json_path, *subjects, **options)
         result.print(details=details)
 
 

@@ -1,10 +1,11 @@
-"""Scoreboard of the Rhythmic EKF: the published simulation over many motions, and the curve over the process noise.
+"""Scoreboard of the Rhythmic EKF: every experiment of the paper, and what became of its future work.
 
-Seeds are 60000 and on; parameters were chosen on seeds below 2000.
+Seeds of single-joint motions are 60000 and on; parameters were chosen on seeds below 2000.
 """
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterable, Sequence
 from concurrent.futures import ProcessPoolExecutor
+from dataclasses import dataclass
 from functools import partial
 from multiprocessing import get_context
 from pathlib import Path
@@ -12,56 +13,153 @@ from typing import Any
 
 from rich.progress import Progress
 
-from services.bench.joukov.curve import curve_rows
+from services.bench.joukov.gait_section import (
+    EVENT_SUBJECTS,
+    event_rows,
+    events_section,
+    strides_section,
+    stroke_strides,
+)
+from services.bench.joukov.marching import FIRST_SEED, PARTICIPANTS, TRIALS, Scores, Tuning, study_trial, tune
+from services.bench.joukov.marching_charts import follow_example
+from services.bench.joukov.marching_section import marching_section
 from services.bench.joukov.motions import JointMotion, motion_kinds
+from services.bench.joukov.neura import study_neura
+from services.bench.joukov.neura_section import missing_section, neura_section
 from services.bench.joukov.report import write_report
-from services.bench.joukov.simulation import PUBLISHED_DEG, SweepStudy, simulation_rows, study_sweep
+from services.bench.joukov.sections import Section
+from services.bench.joukov.simulation import study_sweep
+from services.bench.joukov.single_joint_sections import curve_section, simulation_section
 from services.bench.joukov.study import Study, study_motion
 from services.bench.rhythm.stride_shapes import StrideShapes, load_stride_shapes
-from services.bench.scoreboard import Row, Scoreboard, informative
-from services.ingest.errors import MissingFile
+from services.bench.scoreboard import Row, Scoreboard
+from services.ingest.errors import MissingFile, SourceError
 
 PROCESSES = 2
 SEED = 60000
 MOTIONS = 100
+FEWEST_PARTICIPANTS = 2
+MOTIONS_PER_PARTICIPANT = 15
 HOLD_S = {"simulation": 0.0, "simulation with hold": 40.0}
 """s at 1 rad/s before the ramp: both readings of the paper."""
 NOTE = (
     "S: variance of the jerk per 10 ms sample. S*: smallest S at which the plain EKF's position is within 1 % of its "
-    "best. Simulation: baseline is the plain EKF; elsewhere 'of plain' is the ratio to it and baseline the published "
-    "estimator's."
+    "best; of the marches, on a participant who is not scored. Simulation: baseline is the plain EKF; where a row says "
+    "'of plain', its value is the ratio to the plain EKF and baseline the literal oscillator's."
 )
 
-Score = Callable[[str, Callable[[int], Any]], list[Any]]
+
+@dataclass(frozen=True)
+class Work:
+    """Two processes and a progress bar."""
+
+    pool: ProcessPoolExecutor
+    progress: Progress
+    motions: int
+
+    @property
+    def participants(self) -> int:
+        """How many march."""
+        return min(PARTICIPANTS, max(FEWEST_PARTICIPANTS, self.motions // MOTIONS_PER_PARTICIPANT))
+
+    def each(self, title: str, study: Callable[[Any], Any], tasks: Iterable[Any]) -> list[Any]:
+        """`study` of every task, in their order."""
+        todo = list(tasks)
+        return list(self.progress.track(self.pool.map(study, todo), total=len(todo), description=title))
 
 
-def run(json_path: Path | None = None, motions: int = MOTIONS, report: Path | None = None) -> Scoreboard:
+def run(
+    json_path: Path | None = None, motions: int = MOTIONS, parts: Sequence[str] = (), report: Path | None = None
+) -> Scoreboard:
     """Score the filters.
 
     Args:
         json_path: where to write the rows as well.
         motions: how many of each kind.
+        parts: names of PARTS; none is all.
         report: folder for a Markdown report with charts.
     """
     if motions < 1:
         raise ValueError(f"the number of motions is to be at least 1, not {motions}")
-    shapes, rows = _shapes()
     with Progress() as progress, ProcessPoolExecutor(PROCESSES, mp_context=get_context("spawn")) as pool:
-        seeds = range(SEED, SEED + motions)
-        score = partial(_score_all, pool, progress, seeds)
-        sweeps: dict[str, list[SweepStudy]] = {
-            name: score(name, partial(study_sweep, hold_s=hold_s)) for name, hold_s in HOLD_S.items()
-        }
-        studies: dict[str, list[Study]] = {
-            kind: score(kind, partial(study_seed, make=make)) for kind, make in motion_kinds(shapes).items()
-        }
-    rows = _rows(sweeps, studies) + rows
-    scoreboard = Scoreboard(f"joukov, {motions} motions of each kind", rows, NOTE)
+        work = Work(pool, progress, motions)
+        sections = [section for name, part in PARTS.items() if not parts or name in parts for section in part(work)]
+    title = f"joukov, {motions} motions of each kind"
+    scoreboard = Scoreboard(title, [row for section in sections for row in section.rows], NOTE)
     if json_path is not None:
         scoreboard.write_json(json_path)
     if report is not None:
-        write_report(report, scoreboard, sweeps, studies)
+        write_report(report, title, sections)
     return scoreboard
+
+
+def simulation(work: Work) -> list[Section]:
+    """The published simulation, in both readings."""
+    sweeps = {
+        name: work.each(name, partial(study_sweep, hold_s=hold_s), range(SEED, SEED + work.motions))
+        for name, hold_s in HOLD_S.items()
+    }
+    return [simulation_section(sweeps, HOLD_S)]
+
+
+def curve(work: Work) -> list[Section]:
+    """One joint over the process noise."""
+    shapes, skipped = _shapes()
+    studies: dict[str, list[Study]] = {
+        kind: work.each(kind, partial(study_seed, make=make), range(SEED, SEED + work.motions))
+        for kind, make in motion_kinds(shapes).items()
+    }
+    section = curve_section(studies)
+    return [Section(section.title, section.paragraphs, [*section.rows, *skipped], section.tables, section.charts)]
+
+
+def tables(work: Work) -> list[Section]:
+    """Tables I to IV and segmentation: virtual participants who march, and a recorded walk."""
+    (tuning,) = work.each("tuning", _tune, [0])
+    seeds = range(FIRST_SEED, FIRST_SEED + work.participants)
+    tasks = [(seed, trial) for trial in TRIALS for seed in seeds]
+    scores = work.each("marching", partial(study_trial, tuning=tuning), tasks)
+    trials: dict[str, dict[str, Scores]] = {trial: {} for trial in TRIALS}
+    for (seed, trial), found in zip(tasks, scores, strict=True):
+        trials[trial][f"participant {seed - FIRST_SEED + 1}"] = found
+    example, neura = work.each("recorded walk", _follow, [(name, tuning) for name in ("march", "neura")])
+    return [marching_section(trials, tuning, example), neura]
+
+
+def strides(work: Work) -> list[Section]:
+    """Strides of a stroke survivor."""
+    return [strides_section(work.each("strides", stroke_strides, [0])[0])]
+
+
+def events(work: Work) -> list[Section]:
+    """Gait events against force plates."""
+    found: list[list[Row]] = work.each("events", event_rows, EVENT_SUBJECTS)
+    return [events_section([row for rows in found for row in rows])]
+
+
+PARTS: dict[str, Callable[[Work], list[Section]]] = {
+    "simulation": simulation,
+    "curve": curve,
+    "tables": tables,
+    "strides": strides,
+    "events": events,
+}
+"""Experiments by the name that `ambula bench joukov 100 tables` takes."""
+
+
+def _tune(_: int) -> Tuning:
+    return tune()
+
+
+def _follow(task: tuple[str, Tuning]) -> Any:
+    """The marching example, or the section of the recorded walk."""
+    name, tuning = task
+    if name == "march":
+        return follow_example(tuning)
+    try:
+        return neura_section(study_neura(tuning), tuning)
+    except SourceError as missing:
+        return missing_section(str(missing))
 
 
 def _shapes() -> tuple[StrideShapes | None, list[Row]]:
@@ -71,22 +169,6 @@ def _shapes() -> tuple[StrideShapes | None, list[Row]]:
         return None, [Row("knee: skipped", None, "", str(missing), None, None)]
 
 
-def _score_all(
-    pool: ProcessPoolExecutor, progress: Progress, seeds: Sequence[int], title: str, study: Callable[[int], Any]
-) -> list[Any]:
-    return list(progress.track(pool.map(study, seeds), total=len(seeds), description=title))
-
-
 def study_seed(seed: int, make: Callable[[int], JointMotion]) -> Study:
     """All filters on the motion of a seed."""
     return study_motion(make(seed))
-
-
-def _rows(sweeps: dict[str, list[SweepStudy]], studies: dict[str, list[Study]]) -> list[Row]:
-    ekf, rhythmic = PUBLISHED_DEG
-    rows = [informative("as published, one motion: position", rhythmic, "deg", ekf)]
-    for name, sweep in sweeps.items():
-        rows += simulation_rows(name, sweep, detail=HOLD_S[name] > 0.0)
-    for kind, study in studies.items():
-        rows += curve_rows(kind, study)
-    return rows

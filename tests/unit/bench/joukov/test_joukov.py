@@ -1,5 +1,6 @@
 """Motions, tuning and ratios of the Rhythmic EKF's scoreboard, and a small run of it."""
 
+import math
 from xml.etree import ElementTree
 
 import numpy as np
@@ -17,7 +18,7 @@ from services.bench.joukov.study import (
     study_motion,
     track_errors,
 )
-from services.bench.line_chart import line_chart
+from services.bench.line_chart import HEIGHT, WIDTH, line_chart
 from services.bench.registry import joukov
 from services.bench.rhythm.motions import INTERVAL_S
 from services.bench.rhythm.stride_shapes import HARMONICS, StrideShapes
@@ -139,8 +140,12 @@ def test_charts_are_drawings():
     for line in root.iter("{http://www.w3.org/2000/svg}polyline"):
         for point in line.get("points").split():
             x, y = map(float, point.split(","))
-            assert 0 <= x <= 640
-            assert 0 <= y <= 400
+            assert 0 <= x <= WIDTH
+            assert 0 <= y <= HEIGHT
+    gap = line_chart("gap", "x", "y", {"one": [(0.0, 1.0), (1.0, math.nan), (2.0, 1.5), (3.0, 2.0)]}, from_zero=False)
+    assert gap.count("<polyline") == 2
+    assert "nan" not in gap
+    assert line_chart("level", "x", "y", {"one": [(0.0, 1.0)]}, level=("limit", 3.0)).count("<polyline") == 2
     with pytest.raises(ValueError, match="at least one point"):
         line_chart("empty", "x", "y", {"one": []})
 

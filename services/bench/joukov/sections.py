@@ -1,0 +1,59 @@
+"""One experiment of the report: what was done, its figures, tables and charts."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass, field
+
+import numpy as np
+
+from services.bench.scoreboard import Row
+
+
+@dataclass(frozen=True)
+class Table:
+    """A table of text."""
+
+    caption: str
+    header: Sequence[str]
+    rows: Sequence[Sequence[str]]
+
+    def markdown(self) -> list[str]:
+        """Lines; the first column is aligned left, the others right."""
+        ruler = ["---", *("--:" for _ in self.header[1:])]
+        lines = [self.header, ruler, *self.rows]
+        return [f"**{self.caption}**", "", *(f"| {' | '.join(_cell(c) for c in line)} |" for line in lines)]
+
+
+@dataclass(frozen=True)
+class Section:
+    """One experiment."""
+
+    title: str
+    paragraphs: Sequence[str]
+    """What was done; which parameters were chosen on what and scored on what; under which S."""
+    rows: Sequence[Row]
+    tables: Sequence[Table] = ()
+    charts: dict[str, str] = field(default_factory=dict)
+    """SVG by file name without its ending."""
+
+
+def number(value: float) -> str:
+    """About three digits, for a table."""
+    if not np.isfinite(value):
+        return "-"
+    decimals = 0 if abs(value) >= 100 else 1 if abs(value) >= 10 else 2
+    return f"{value:.{decimals}f}"
+
+
+def power(S: float) -> str:
+    """S as a power of ten, for a table."""
+    mantissa, exponent = f"{S:.1e}".split("e")
+    return f"{mantissa}e{int(exponent)}"
+
+
+def change(ratio: float) -> str:
+    """A ratio as a change in percent."""
+    return f"{100.0 * (ratio - 1.0):+.0f} %"
+
+
+def _cell(text: str) -> str:
+    return text.replace("|", "\\|")
