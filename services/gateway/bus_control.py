@@ -28,6 +28,9 @@ class BusControl:
             "speed": request.speed,
             "estimator": request.estimator,
             "walk_path": request.walk_path,
+            "known_rhythms": None
+            if request.known_rhythms is None
+            else [known.model_dump(mode="json") for known in request.known_rhythms],
         }
         try:
             return SessionDescription.model_validate(self._order("start", order, START_TIMEOUT_S))

@@ -8,8 +8,18 @@ from functools import partial
 from schemas.gait import GaitEvent, Stride
 from schemas.health import Health, Progress
 from schemas.metrics import SessionMetrics
+from schemas.rhythm import LearnedRhythm
 from schemas.session import SessionDescription
-from schemas.signals import GAIT_EVENT, LIVE_POSE, METRICS, STRIDE, health_key, progress_key, stream_key
+from schemas.signals import (
+    GAIT_EVENT,
+    LEARNED_RHYTHM,
+    LIVE_POSE,
+    METRICS,
+    STRIDE,
+    health_key,
+    progress_key,
+    stream_key,
+)
 from services.bus.connection import Bus
 from services.bus.health import HealthReporter
 from services.bus.logs import event
@@ -27,7 +37,7 @@ SETTLE_S = 1.0
 SESSION_WORD = 2
 """Place of the session in a stream's key."""
 
-STREAMS = tuple(Stream(signal, signal.producer) for signal in (GAIT_EVENT, STRIDE, METRICS))
+STREAMS = tuple(Stream(signal, signal.producer) for signal in (GAIT_EVENT, STRIDE, LEARNED_RHYTHM, METRICS))
 """Followed in order and without loss, for every session."""
 
 logger = logging.getLogger(__name__)
@@ -130,5 +140,7 @@ class BusFeed:
                 self._live.tell(session, views.event_view(contact))
             case Stride() as stride:
                 self._live.tell(session, views.stride_view(stride))
+            case LearnedRhythm() as rhythm:
+                self._keeper.learned(session, rhythm)
             case SessionMetrics() as metrics:
                 self._keeper.measured(session, metrics)

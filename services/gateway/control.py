@@ -3,6 +3,7 @@
 from dataclasses import dataclass
 from typing import Literal, Protocol
 
+from schemas.rhythm import KnownRhythm
 from schemas.session import SessionDescription, WalkPath
 
 
@@ -18,7 +19,7 @@ class ControlRefused(RuntimeError):
 class StartRequest:
     """A session to be started. `speed` None plays as fast as the services follow.
 
-    `estimator` and `walk_path` None are what the source says.
+    `estimator`, `walk_path` and `known_rhythms` None are what the source says.
     """
 
     session: str
@@ -26,6 +27,7 @@ class StartRequest:
     speed: float | None
     estimator: str | None
     walk_path: WalkPath | None
+    known_rhythms: list[KnownRhythm] | None
 
 
 @dataclass(frozen=True, slots=True)

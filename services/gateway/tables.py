@@ -66,3 +66,13 @@ class MetricsRow(Base):
     final: Mapped[bool]
     received: Mapped[datetime] = mapped_column(UtcTime)
     body: Mapped[dict[str, Any]] = mapped_column(JSON)
+
+
+class RhythmRow(Base):
+    """The last rhythm a session learned, as it came (schemas.rhythm.LearnedRhythm)."""
+
+    __tablename__ = "session_rhythm"
+
+    session_id: Mapped[str] = mapped_column(ForeignKey("session.id", ondelete="CASCADE"), primary_key=True)
+    received: Mapped[datetime] = mapped_column(UtcTime)
+    body: Mapped[dict[str, Any]] = mapped_column(JSON)

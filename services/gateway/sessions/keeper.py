@@ -9,6 +9,7 @@ from functools import partial
 from sqlalchemy.exc import SQLAlchemyError
 
 from schemas.metrics import SessionMetrics
+from schemas.rhythm import LearnedRhythm
 from schemas.session import SessionDescription
 from services.gateway.database import Database
 from services.gateway.live import views
@@ -16,6 +17,7 @@ from services.gateway.live.hub import LiveHub
 from services.gateway.parameters import GatewayParameters
 from services.gateway.sessions import records
 from services.gateway.sessions.models import SessionState
+from services.gateway.sessions.rhythms import record_rhythm
 
 log = logging.getLogger(__name__)
 
@@ -57,6 +59,10 @@ class SessionKeeper:
             self._finished.add(session)
             self.live.close(session, SessionState.FINISHED)
 
+    def learned(self, session: str, rhythm: LearnedRhythm) -> None:
+        """What the session's rhythm has learned so far; the patient's next session starts from it."""
+        self._write((session, "rhythm"), partial(self._record_rhythm, session, rhythm))
+
     def progressed(self, session: str, captured_s: float) -> None:
         """A service has come so far with the session."""
         if session in self.running:
@@ -92,6 +98,10 @@ class SessionKeeper:
     def _record_metrics(self, session: str, metrics: SessionMetrics) -> None:
         with self.database.transaction() as database:
             records.record_metrics(database, session, metrics)
+
+    def _record_rhythm(self, session: str, rhythm: LearnedRhythm) -> None:
+        with self.database.transaction() as database:
+            record_rhythm(database, session, rhythm)
 
     def _record_length(self, session: str, length_s: float) -> None:
         with self.database.transaction() as database:

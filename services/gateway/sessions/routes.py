@@ -1,6 +1,7 @@
 """REST of sessions."""
 
 import logging
+from datetime import UTC, datetime
 from http import HTTPStatus
 from typing import Annotated
 
@@ -22,6 +23,7 @@ from services.gateway.sessions.models import (
     SessionPage,
     SessionState,
 )
+from services.gateway.sessions.rhythms import known_rhythms
 
 log = logging.getLogger(__name__)
 router = APIRouter(prefix="/v1/sessions", tags=["sessions"])
@@ -34,14 +36,18 @@ CHOOSE_SOURCE = "Choose a source from GET /v1/sources."
     "", status_code=HTTPStatus.CREATED, responses=documented(HTTPStatus.NOT_FOUND, HTTPStatus.SERVICE_UNAVAILABLE)
 )
 def start_session(body: SessionIn, gateway: Context) -> SessionOut:
-    """Store a session and ask an ingest to run it. A session that could not start stays listed as failed."""
-    session = records.new_session_id()
+    """Store a session and ask an ingest to run it. A session that could not start stays listed as failed.
+
+    With a patient, the session knows the rhythms of the patient's previous trial and visit and starts from them.
+    """
+    session, known = records.new_session_id(), None
     with gateway.database.transaction() as database:
         if body.patient is not None:
             get_patient(database, body.patient)
+            known = known_rhythms(database, body.patient, datetime.now(UTC))
         records.add_requested(database, session, body)
     description = _ask_for_start(
-        gateway, StartRequest(session, body.source, body.speed, body.estimator, body.walk_path)
+        gateway, StartRequest(session, body.source, body.speed, body.estimator, body.walk_path, known)
     )
     with gateway.database.transaction() as database:
         row = records.record_start(database, description)
