@@ -10,7 +10,7 @@ LEFT, RIGHT, TOP, BOTTOM = 72, 200, 44, 56
 COLOURS = ("#4d4d4d", "#c0392b", "#1f6fb2", "#2e8b57", "#8e5ea2", "#d98c1f")
 FEW = 25
 """Points of a line up to which each is marked."""
-DASHED = "6 4"
+LEVEL_COLOUR, DASHES = "#777777", ("7 4", "2 3")
 
 Points = Sequence[tuple[float, float]]
 
@@ -23,7 +23,8 @@ def line_chart(
     *,
     log_x: bool = False,
     from_zero: bool = True,
-    level: tuple[str, float] | None = None,
+    levels: Mapping[str, float] | None = None,
+    colours: Mapping[str, str] | None = None,
 ) -> str:
     """An SVG document with one line per entry of `lines`.
 
@@ -34,7 +35,8 @@ def line_chart(
         lines: points (x, y) by name; the names make the legend. Where y is not finite, the line is interrupted.
         log_x: decades on the x axis; x > 0 then.
         from_zero: whether the y axis begins at zero.
-        level: name and y of a dashed level across the chart.
+        levels: y of dashed levels across the chart, by name.
+        colours: of lines by name; the others take their turn in COLOURS.
 
     Raises:
         ValueError: there is nothing to draw.
@@ -42,7 +44,8 @@ def line_chart(
     points = [(log10(x) if log_x else x, y) for line in lines.values() for x, y in line if isfinite(y)]
     if not points:
         raise ValueError("a chart needs at least one point")
-    heights = [y for _, y in points] + ([0.0] if from_zero else []) + ([] if level is None else [level[1]])
+    levels, colours = levels or {}, colours or {}
+    heights = [*(y for _, y in points), *([0.0] if from_zero else []), *levels.values()]
     x_ticks, y_ticks = _ticks([x for x, _ in points], whole=log_x), _ticks(heights)
 
     def place(x: float, y: float) -> tuple[float, float]:
@@ -57,13 +60,14 @@ def line_chart(
     for tick in y_ticks:
         x, y = place(x_ticks[0], tick)
         parts += [_rule(x, y, WIDTH - RIGHT, y), _text(x - 8, y + 4, f"{tick:g}", "end")]
-    if level is not None:
-        y = place(x_ticks[0], level[1])[1]
-        parts.append(_polyline([(LEFT, y), (WIDTH - RIGHT, y)], "#999999", DASHED))
-        parts += _legend("#999999", level[0], len(lines), DASHED)
+    for i, (name, height) in enumerate(levels.items()):
+        y = place(x_ticks[0], height)[1]
+        parts.append(_polyline([(LEFT, y), (WIDTH - RIGHT, y)], LEVEL_COLOUR, DASHES[i % len(DASHES)]))
+        parts += _legend(LEVEL_COLOUR, name, len(lines) + i, DASHES[i % len(DASHES)])
     for i, (name, line) in enumerate(lines.items()):
         drawn = [place(log10(x) if log_x else x, y) if isfinite(y) else None for x, y in line]
-        parts += _line(drawn, COLOURS[i % len(COLOURS)]) + _legend(COLOURS[i % len(COLOURS)], name, i)
+        colour = colours.get(name, COLOURS[i % len(COLOURS)])
+        parts += _line(drawn, colour) + _legend(colour, name, i)
     parts.append(_text((LEFT + WIDTH - RIGHT) / 2, HEIGHT - 14, x_label, "middle"))
     middle = (TOP + HEIGHT - BOTTOM) / 2
     parts.append(f'<g transform="rotate(-90 18 {middle:g})">{_text(18, middle, y_label, "middle")}</g>')

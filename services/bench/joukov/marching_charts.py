@@ -22,6 +22,7 @@ from services.bench.joukov.marching import (
 )
 from services.bench.joukov.marching_tables import PUBLISHED_ACCELERATION, PUBLISHED_VELOCITY, curve
 from services.bench.joukov.recordings import JOINTS
+from services.bench.joukov.sections import COLOURS
 from services.bench.line_chart import line_chart
 
 FloatArray = NDArray[np.float64]
@@ -43,7 +44,7 @@ class Example:
     """Right knee, rad/s^2, by estimator, and the truth."""
     beat_time_s: FloatArray
     frequency: dict[str, FloatArray]
-    """rad/s, with the changing metronome."""
+    """rad/s, with the changing metronome, and the metronome's."""
 
 
 def follow_example(tuning: Tuning) -> Example:
@@ -58,7 +59,7 @@ def follow_example(tuning: Tuning) -> Example:
     beats = {estimator: changing.run(Setting("gravity", estimator, tuning.star)) for estimator in (LITERAL, OURS)}
     every = slice(None, None, 25)
     beat_s = beats[OURS].time_s[every]
-    frequency = {TRUTH: changing.march.timeline.tempo.walked(0.0, beat_s).rate * 2 * np.pi}
+    frequency = {"metronome": changing.march.beat.walked(0.0, beat_s).rate * 2 * np.pi}
     frequency |= {name: np.where(run.locked, run.frequency, np.nan)[every] for name, run in beats.items()}
     return Example(time_s[shown], acceleration, beat_s, frequency)
 
@@ -77,14 +78,20 @@ def _acceleration(example: Example) -> str:
     lines = {_title(name): list(zip(example.time_s.tolist(), np.degrees(values).tolist(), strict=True))
              for name, values in example.acceleration.items()}  # fmt: skip
     return line_chart(
-        "Right knee of a marching participant, at S*", "time, s", "acceleration, deg/s²", lines, from_zero=False
+        "Right knee of a marching participant, at S* (figure 8)",
+        "time, s",
+        "acceleration, deg/s²",
+        lines,
+        from_zero=False,
+        colours=COLOURS,
     )
 
 
 def _frequency(example: Example) -> str:
     lines = {_title(name): list(zip(example.beat_time_s.tolist(), (values / (2 * np.pi)).tolist(), strict=True))
              for name, values in example.frequency.items()}  # fmt: skip
-    return line_chart("A metronome that changes every 30 s, at S*", "time, s", "frequency, Hz", lines, from_zero=False)
+    title, colours = "A metronome that changes every 30 s, at S* (figure 10)", {**COLOURS, "metronome": COLOURS[TRUTH]}
+    return line_chart(title, "time, s", "frequency, Hz", lines, from_zero=False, colours=colours)
 
 
 def _curve(people: Mapping[str, Scores], quantity: int, published: float) -> str:
@@ -93,14 +100,14 @@ def _curve(people: Mapping[str, Scores], quantity: int, published: float) -> str
         _title(estimator): list(zip(GRID.tolist(), curve(people, estimator)[:, quantity].tolist(), strict=True))
         for estimator in (LITERAL, OURS)
     }
-    lines = {"plain EKF": [(S, 1.0) for S in GRID.tolist()], **lines}
     return line_chart(
         f"Marching: {name} error against the plain EKF at the same S",
         S_LABEL,
         "ratio of RMSE",
         lines,
         log_x=True,
-        level=(f"published {100 * (published - 1):+.0f} %", published),
+        levels={"EKF": 1.0, f"published {100 * (published - 1):+.0f} %": published},
+        colours=COLOURS,
     )
 
 

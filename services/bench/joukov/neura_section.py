@@ -61,10 +61,12 @@ def _rows(study: NeuraStudy, tuning: Tuning) -> list[Row]:
 
 
 def _chart(study: NeuraStudy) -> str:
-    lines = {"plain EKF": [(S, 1.0) for S in GRID.tolist()]}
+    lines: dict[str, list[tuple[float, float]]] = {}
     for estimator, title in ((LITERAL, "literal"), (OURS, "ours")):
         for q in (1, 2):
             ratios = [float(_ratio(study, estimator, S)[q]) for S in GRID.tolist()]
             lines[f"{title}, {QUANTITIES[q]}"] = list(zip(GRID.tolist(), ratios, strict=True))
     title = "Recorded walk: error against the plain EKF at the same S"
-    return line_chart(title, "process noise S, (rad/s³)²", "ratio of RMSE", lines, log_x=True, from_zero=False)
+    return line_chart(
+        title, "process noise S, (rad/s³)²", "ratio of RMSE", lines, log_x=True, from_zero=False, levels={"EKF": 1.0}
+    )

@@ -7,6 +7,9 @@ import numpy as np
 
 from services.bench.scoreboard import Row
 
+COLOURS = {"truth": "#222222", "EKF": "#d98c1f", "literal": "#8e5ea2", "ours": "#1f6fb2"}
+"""Of what is drawn in several charts."""
+
 
 @dataclass(frozen=True)
 class Table:

@@ -5,7 +5,7 @@ from collections.abc import Mapping, Sequence
 import numpy as np
 
 from services.bench.joukov.curve import curve_ratio, curve_rows, median_ratio, worst_ratio
-from services.bench.joukov.sections import Section, Table, change, number
+from services.bench.joukov.sections import COLOURS, Section, Table, change, number
 from services.bench.joukov.simulation import (
     JERK_EDGES,
     PUBLISHED_DEG,
@@ -130,7 +130,7 @@ def jerk_chart(title: str, sweep: Sequence[SweepStudy]) -> str:
             for i, edge in enumerate(JERK_EDGES[:-1])
             if bins.count[i] > 0.0
         ]
-    return line_chart(title, "|jerk| of at least, rad/s³", "acceleration behind by, deg/s²", lines)
+    return line_chart(title, "|jerk| of at least, rad/s³", "acceleration behind by, deg/s²", lines, colours=COLOURS)
 
 
 def error_chart(title: str, studies: Sequence[Study], quantity: int) -> str:
@@ -139,7 +139,9 @@ def error_chart(title: str, studies: Sequence[Study], quantity: int) -> str:
     for name in studies[0].curves:
         error = np.degrees(np.median([study.curves[name][FIRST:, quantity] for study in studies], axis=0))
         lines[TITLES.get(name, name)] = list(zip(GRID[FIRST:].tolist(), error.tolist(), strict=True))
-    return line_chart(title, S_LABEL, f"median RMSE, {UNITS[quantity].replace('2', '²')}", lines, log_x=True)
+    return line_chart(
+        title, S_LABEL, f"median RMSE, {UNITS[quantity].replace('2', '²')}", lines, log_x=True, colours=COLOURS
+    )
 
 
 def ratio_chart(title: str, studies: Sequence[Study]) -> str:
@@ -147,7 +149,7 @@ def ratio_chart(title: str, studies: Sequence[Study]) -> str:
     trusted, published = curve_ratio(studies, "trusted"), curve_ratio(studies, "published")
     lines = {f"ours, {name}": _points(trusted[:, i].tolist()) for i, name in enumerate(QUANTITIES)}
     lines["literal, acceleration"] = _points(published[:, 2].tolist())
-    return line_chart(title, S_LABEL, "median ratio of RMSE", lines, log_x=True, level=("plain EKF", 1.0))
+    return line_chart(title, S_LABEL, "median ratio of RMSE", lines, log_x=True, levels={"EKF": 1.0})
 
 
 def _points(values: list[float]) -> list[tuple[float, float]]:

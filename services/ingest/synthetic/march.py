@@ -94,7 +94,10 @@ class SyntheticMarch(SyntheticSession):
     def __init__(self, parameters: MarchParameters) -> None:
         rng = np.random.default_rng([parameters.seed, 4])
         pace, lift, tuck = rng.uniform(*OWN_PACE_HZ), rng.uniform(*LIFT), rng.uniform(*TUCK)
-        tempo = _tempo(parameters, parameters.pace or pace, rng)
+        self.beat = _beat(parameters, parameters.pace or pace)
+        """What the person would keep to without jitter."""
+        early = random_spline(parameters.beat_jitter, 1 / self.beat.frequency_hz, parameters.duration, rng)
+        tempo = Jittered(self.beat, early)
         timeline = Timeline(plan_bouts(parameters, tempo), (), 1.0, tempo)
         legs = parameters.thigh_length, parameters.shank_length
         gait = Gait(*legs, parameters.hip_width, curves=marching_curves(parameters.lift or lift, tuck, *legs))
@@ -107,17 +110,13 @@ class SyntheticMarch(SyntheticSession):
         return self.timeline.amplitude(time_s) * jet_of(self._lifts, time_s).shifted(1.0)
 
 
-def _tempo(parameters: MarchParameters, pace_hz: float, rng: np.random.Generator) -> Tempo:
-    tempo: Tempo
+def _beat(parameters: MarchParameters, pace_hz: float) -> Tempo:
     if parameters.tempo_changes:
         beats = tuple(beat / 60 for beat in PUBLISHED_BEATS_PER_MIN)
-        tempo = Metronome(beats, tuple(parameters.standing + BEAT_LASTS_S * k for k in range(len(beats))))
-    elif parameters.metronome > 0:
-        tempo = Metronome((parameters.metronome / 60,), (0.0,))
-    else:
-        tempo = OwnPace.drawn(pace_hz, parameters.wander, parameters.seed)
-    early = random_spline(parameters.beat_jitter, 1 / tempo.frequency_hz, parameters.duration, rng)
-    return Jittered(tempo, early)
+        return Metronome(beats, tuple(parameters.standing + BEAT_LASTS_S * k for k in range(len(beats))))
+    if parameters.metronome > 0:
+        return Metronome((parameters.metronome / 60,), (0.0,))
+    return OwnPace.drawn(pace_hz, parameters.wander, parameters.seed)
 
 
 def _words(parameters: MarchParameters) -> str:

@@ -145,7 +145,7 @@ def test_charts_are_drawings():
     gap = line_chart("gap", "x", "y", {"one": [(0.0, 1.0), (1.0, math.nan), (2.0, 1.5), (3.0, 2.0)]}, from_zero=False)
     assert gap.count("<polyline") == 2
     assert "nan" not in gap
-    assert line_chart("level", "x", "y", {"one": [(0.0, 1.0)]}, level=("limit", 3.0)).count("<polyline") == 2
+    assert line_chart("level", "x", "y", {"one": [(0.0, 1.0)]}, levels={"limit": 3.0}).count("<polyline") == 2
     with pytest.raises(ValueError, match="at least one point"):
         line_chart("empty", "x", "y", {"one": []})
 
