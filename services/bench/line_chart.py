@@ -26,7 +26,7 @@ def line_chart(
     levels: Mapping[str, float] | None = None,
     colours: Mapping[str, str] | None = None,
 ) -> str:
-    """An SVG document with one line per entry of `lines`.
+    """An SVG document with one line per entry of `lines`, the first on top.
 
     Args:
         title: above the chart.
@@ -64,7 +64,7 @@ def line_chart(
         y = place(x_ticks[0], height)[1]
         parts.append(_polyline([(LEFT, y), (WIDTH - RIGHT, y)], LEVEL_COLOUR, DASHES[i % len(DASHES)]))
         parts += _legend(LEVEL_COLOUR, name, len(lines) + i, DASHES[i % len(DASHES)])
-    for i, (name, line) in enumerate(lines.items()):
+    for i, (name, line) in reversed(list(enumerate(lines.items()))):
         drawn = [place(log10(x) if log_x else x, y) if isfinite(y) else None for x, y in line]
         colour = colours.get(name, COLOURS[i % len(COLOURS)])
         parts += _line(drawn, colour) + _legend(colour, name, i)

@@ -6,11 +6,13 @@ import numpy as np
 
 from services.bench.joukov.marching import (
     BEAT,
+    ESTIMATORS,
     LITERAL,
     MODELS,
     OURS,
     OWN_PACE,
     PLAIN,
+    TITLES,
     TRIALS,
     Score,
     Scores,
@@ -38,7 +40,7 @@ from services.bench.joukov.marching_tables import (
 )
 from services.bench.joukov.published_tables import error_table, prediction_table
 from services.bench.joukov.regions import BOTTOM, QUANTITIES, QUARTER, REGIONS, TOP, WHOLE
-from services.bench.joukov.sections import Section, power
+from services.bench.joukov.sections import Finding, Section, change, power
 from services.bench.scoreboard import Row, at_least, at_most, informative
 
 MODEL_WORDS = {"gravity": "accelerometers see gravity alone", "published": "published measurement model"}
@@ -65,7 +67,45 @@ def marching_section(trials: Trials, tuning: Tuning, example: Example) -> Sectio
         _rows(trials, tuning),
         tables,
         charts(people, example),
+        _findings(trials, tuning),
     )
+
+
+def _findings(trials: Trials, tuning: Tuning) -> list[Finding]:
+    """What the paper claims for its participants."""
+    people, named = people_of(trials), tuning.named
+    found = []
+    for q, wanted in WANTED.items():
+        here, where = [], []
+        for e in (OURS, LITERAL):
+            ratios = {at: float(mean_ratio(people, Setting("gravity", e, S))[q]) for at, S in named.items()}
+            here.append(f"{TITLES[e]} " + ", ".join(f"{change(ratio)} at {at}" for at, ratio in ratios.items()))
+            where.append(f"{TITLES[e]}: up to {power(largest_S(curve(people, e)[:, q], wanted))}")
+        found.append(Finding(f"marching, {QUANTITIES[q]} {change(wanted)}", "; ".join(here), "; ".join(where)))
+    beat = {
+        e: max(abs(frequency_error(s[Setting("gravity", e, tuning.star)])) for s in trials[BEAT].values())
+        for e in (OURS, LITERAL)
+    }
+    words = "; ".join(f"{TITLES[e]} at most {error:.2f} %" for e, error in beat.items())
+    found.append(Finding("marching, frequency within 0.18, 0.30 and 1.08 %", words, "S*"))
+    for trial in TRIALS:
+        right = {
+            e: segmented_percent([s[Setting("gravity", e, tuning.star)] for s in trials[trial].values()])
+            for e in (OURS, LITERAL)
+        }
+        words = "; ".join(f"{TITLES[e]} {share:.1f} %" for e, share in right.items())
+        found.append(Finding(f"marching, segmentation 96 %, {trial}", words, "S*"))
+    return [*found, _prediction_finding(people, tuning)]
+
+
+def _prediction_finding(people: Mapping[str, Scores], tuning: Tuning) -> Finding:
+    parts = []
+    for model in ("gravity", "published"):
+        by = {e: _prediction([s[Setting(model, e, tuning.star)] for s in people.values()]) for e in ESTIMATORS}
+        for e in (OURS, LITERAL):
+            gyro, accel = (float(np.mean(by[e][kind] / by[PLAIN][kind])) for kind in range(2))
+            parts.append(f"{TITLES[e]} {change(gyro)} and {change(accel)} ({MODEL_WORDS[model]})")
+    return Finding("marching, next sample: gyroscope -42 %, accelerometer -15 %", "; ".join(parts), "S*")
 
 
 def _paragraphs(people: int, tuning: Tuning) -> list[str]:

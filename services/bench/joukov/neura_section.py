@@ -6,7 +6,7 @@ from services.bench.joukov.marching import LITERAL, OURS, PLAIN, Setting, Tuning
 from services.bench.joukov.neura import CUTOFF_HZ, GRID, NeuraStudy
 from services.bench.joukov.published_tables import error_table, prediction_table
 from services.bench.joukov.regions import BOTTOM, QUANTITIES, TOP, WHOLE
-from services.bench.joukov.sections import Section
+from services.bench.joukov.sections import COLOURS, Section
 from services.bench.line_chart import line_chart
 from services.bench.scoreboard import Row, informative
 
@@ -68,5 +68,12 @@ def _chart(study: NeuraStudy) -> str:
             lines[f"{title}, {QUANTITIES[q]}"] = list(zip(GRID.tolist(), ratios, strict=True))
     title = "Recorded walk: error against the plain EKF at the same S"
     return line_chart(
-        title, "process noise S, (rad/s³)²", "ratio of RMSE", lines, log_x=True, from_zero=False, levels={"EKF": 1.0}
+        title,
+        "process noise S, (rad/s³)²",
+        "ratio of RMSE",
+        lines,
+        log_x=True,
+        from_zero=False,
+        levels={"EKF": 1.0},
+        colours=COLOURS,
     )

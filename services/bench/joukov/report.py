@@ -3,7 +3,7 @@
 from collections.abc import Sequence
 from pathlib import Path
 
-from services.bench.joukov.sections import Section
+from services.bench.joukov.sections import Section, Table
 from services.bench.scoreboard import Row
 
 HOW_TO_READ = """The Rhythmic EKF of Joukov et al. learns a periodic movement while it is estimated and tells the filter
@@ -20,12 +20,23 @@ published improvements appear."""
 def write_report(folder: Path, title: str, sections: Sequence[Section]) -> None:
     """Write report.md and SVG files into `folder`, which is made if need be."""
     folder.mkdir(parents=True, exist_ok=True)
-    lines = [f"# {title}", "", HOW_TO_READ, "", *_summary(sections)]
+    lines = [f"# {title}", "", HOW_TO_READ, "", *_findings(sections), *_summary(sections)]
     for place, section in enumerate(sections, 1):
         for name, svg in section.charts.items():
             (folder / f"{name}.svg").write_text(svg)
         lines += ["", f"## {place}. {section.title}", "", *_section(section)]
     (folder / "report.md").write_text("\n".join(lines) + "\n")
+
+
+def _findings(sections: Sequence[Section]) -> list[str]:
+    """The published figures and what became of them."""
+    findings = [finding for section in sections for finding in section.findings]
+    table = Table(
+        "Change of the RMSE against the plain EKF at the same S",
+        ("published", "here", "S at which the published gain appears"),
+        findings,
+    )
+    return ["## What the paper reports, and under which S it appears", "", *table.markdown(), ""] if findings else []
 
 
 def _summary(sections: Sequence[Section]) -> list[str]:

@@ -2,12 +2,25 @@
 
 from collections.abc import Sequence
 from dataclasses import dataclass, field
+from typing import NamedTuple
 
 import numpy as np
 
 from services.bench.scoreboard import Row
 
-COLOURS = {"truth": "#222222", "EKF": "#d98c1f", "literal": "#8e5ea2", "ours": "#1f6fb2"}
+COLOURS = {
+    "truth": "#222222",
+    "EKF": "#d98c1f",
+    "literal": "#8e5ea2",
+    "ours": "#1f6fb2",
+    "ours, adaptive noise": "#2e8b57",
+    "ours, as for walking": "#8fc1e8",
+    "literal, velocity": "#c9a3d4",
+    "literal, acceleration": "#8e5ea2",
+    "ours, position": "#9aa5ab",
+    "ours, velocity": "#7db8e8",
+    "ours, acceleration": "#1f6fb2",
+}
 """Of what is drawn in several charts."""
 
 
@@ -26,6 +39,15 @@ class Table:
         return [f"**{self.caption}**", "", *(f"| {' | '.join(_cell(c) for c in line)} |" for line in lines)]
 
 
+class Finding(NamedTuple):
+    """A figure that the paper reports, and what became of it."""
+
+    published: str
+    here: str
+    S: str
+    """Under which S."""
+
+
 @dataclass(frozen=True)
 class Section:
     """One experiment."""
@@ -37,6 +59,7 @@ class Section:
     tables: Sequence[Table] = ()
     charts: dict[str, str] = field(default_factory=dict)
     """SVG by file name without its ending."""
+    findings: Sequence[Finding] = ()
 
 
 def number(value: float) -> str:
@@ -47,8 +70,10 @@ def number(value: float) -> str:
     return f"{value:.{decimals}f}"
 
 
-def power(S: float) -> str:
+def power(S: float | None) -> str:
     """S as a power of ten, for a table."""
+    if S is None:
+        return "none tried"
     mantissa, exponent = f"{S:.1e}".split("e")
     return f"{mantissa}e{int(exponent)}"
 

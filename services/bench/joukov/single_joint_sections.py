@@ -5,7 +5,7 @@ from collections.abc import Mapping, Sequence
 import numpy as np
 
 from services.bench.joukov.curve import curve_ratio, curve_rows, median_ratio, worst_ratio
-from services.bench.joukov.sections import COLOURS, Section, Table, change, number
+from services.bench.joukov.sections import COLOURS, Finding, Section, Table, change, number, power
 from services.bench.joukov.simulation import (
     JERK_EDGES,
     PUBLISHED_DEG,
@@ -62,7 +62,26 @@ def simulation_section(sweeps: Mapping[str, Sequence[SweepStudy]], holds: Mappin
         "S* is, for each motion, the smallest S of half decades at which the plain filter's position is within 1 % of "
         "its best, scored on the same motion, as the paper's minimisation does.",
     ]
-    return Section("The published simulation", paragraphs, rows, tables, drawn)
+    findings = [_finding(name, sweep) for name, sweep in sweeps.items()]
+    return Section("The published simulation", paragraphs, rows, tables, drawn, findings)
+
+
+def _finding(name: str, sweep: Sequence[SweepStudy]) -> Finding:
+    """Where the published gain in position appears."""
+    ekf, rhythmic = PUBLISHED_DEG
+    here, where = [], []
+    for filtered in ("trusted", "published"):
+        position = {
+            key: np.median([s.study.curves[key][FIRST:, 0] for s in sweep], axis=0) for key in ("plain", filtered)
+        }
+        reached = np.flatnonzero(position[filtered] <= rhythmic / ekf * position["plain"])
+        where.append(f"{TITLES[filtered]}: up to {power(float(GRID[FIRST + reached[-1]]) if reached.size else None)}")
+        for tenth, at in ((False, "S*"), (True, "S*/10")):
+            plain, ours = (float(median_error(sweep, key, tenth)[0]) for key in ("plain", filtered))
+            here.append(f"{TITLES[filtered]} {number(plain)} to {number(ours)} at {at}")
+    return Finding(
+        f"position {ekf} to {rhythmic} deg ({change(rhythmic / ekf)}), {name}", "; ".join(here), "; ".join(where)
+    )
 
 
 def _error_table(name: str, sweep: Sequence[SweepStudy]) -> Table:
@@ -149,7 +168,7 @@ def ratio_chart(title: str, studies: Sequence[Study]) -> str:
     trusted, published = curve_ratio(studies, "trusted"), curve_ratio(studies, "published")
     lines = {f"ours, {name}": _points(trusted[:, i].tolist()) for i, name in enumerate(QUANTITIES)}
     lines["literal, acceleration"] = _points(published[:, 2].tolist())
-    return line_chart(title, S_LABEL, "median ratio of RMSE", lines, log_x=True, levels={"EKF": 1.0})
+    return line_chart(title, S_LABEL, "median ratio of RMSE", lines, log_x=True, levels={"EKF": 1.0}, colours=COLOURS)
 
 
 def _points(values: list[float]) -> list[tuple[float, float]]:
