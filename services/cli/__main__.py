@@ -39,6 +39,14 @@ Straight = Annotated[
         show_default=False,
     ),
 ]
+Rhythm = Annotated[
+    Path | None,
+    typer.Option(
+        metavar="PATH",
+        help="what was learned then: a JSON file, the folder of an archived session or of ambula run",
+        show_default=False,
+    ),
+]
 
 
 def _version(wanted: bool) -> None:
@@ -73,11 +81,15 @@ def replay(
     speed: Annotated[str, typer.Option(help="1 = as recorded, 10 = ten times as fast, max = as fast as it goes")] = "1",
     estimator: Estimator = None,
     straight: Straight = None,
+    previous_trial: Rhythm = None,
+    previous_visit: Rhythm = None,
+    exemplar: Rhythm = None,
 ) -> None:
     """Play a recording through the running services, as if the sensors were worn now."""
     from services.bus.connection import Bus, BusUnavailable
     from services.bus.settings import BusSettings
     from services.cli import live, show
+    from services.cli.rhythms import read_known
 
     with (
         told(BusUnavailable, live.NotStarted, live.WentSilent, ValueError),
@@ -85,7 +97,8 @@ def replay(
         live.Watch(bus) as watch,
     ):
         pace = None if speed == "max" else _positive(speed)
-        description = live.start_session(bus, _absolute(path), pace, estimator, _walk_path(straight))
+        known = read_known({"previous trial": previous_trial, "previous visit": previous_visit, "exemplar": exemplar})
+        description = live.start_session(bus, _absolute(path), pace, estimator, _walk_path(straight), known)
         err.print(f"session {description.session}: {description.title}")
         with Progress(
             TextColumn("{task.description}"), BarColumn(), TextColumn("{task.fields[at]}"), console=err
@@ -104,14 +117,33 @@ def run(
     folder: Annotated[Path, typer.Option("--out", help="folder for the results; made when it is missing")],
     estimator: Estimator = None,
     straight: Straight = None,
+    previous_trial: Rhythm = None,
+    previous_visit: Rhythm = None,
+    exemplar: Rhythm = None,
 ) -> None:
     """Run a recording through the same nodes in a plain loop and write CSV and JSON files."""
+    from services.cli.rhythms import NoRhythm, read_known
     from services.cli.run import run as run_source
     from services.ingest.errors import SourceError
 
-    with told(SourceError, OSError):
-        run_source(path, estimator, folder, err, _walk_path(straight))
+    with told(SourceError, NoRhythm, OSError):
+        known = read_known({"previous trial": previous_trial, "previous visit": previous_visit, "exemplar": exemplar})
+        run_source(path, estimator, folder, err, _walk_path(straight), known)
     out.print(f"written: {folder}/joint_angles.csv, events.csv, strides.csv, metrics.json")
+
+
+@app.command()
+def exemplar(
+    session: Annotated[Path, typer.Argument(help="folder of an archived session, or of ambula run")],
+    file: Annotated[Path, typer.Option("--out", help="JSON file to write")],
+) -> None:
+    """Write the learned rhythm of a session to a file, to compare other sessions with (run --exemplar FILE)."""
+    from services.cli.rhythms import NoRhythm, read_rhythm
+
+    with told(NoRhythm, OSError):
+        rhythm = read_rhythm(session)
+        file.write_text(rhythm.model_dump_json(indent=2) + "\n", encoding="utf-8")
+    out.print(f"written: {file}, the mean of {rhythm.strides} strides")
 
 
 @app.command()

@@ -9,6 +9,7 @@ from typing import Any, Self
 
 from schemas.health import Progress
 from schemas.metrics import SessionMetrics
+from schemas.rhythm import KnownRhythm
 from schemas.session import SessionDescription, WalkPath
 from schemas.signals import METRICS, command_key, progress_key, replay_key, stream_key
 from services.bus.connection import Bus
@@ -27,13 +28,26 @@ class WentSilent(RuntimeError):
 
 
 def start_session(
-    bus: Bus, spec: str, speed: float | None, estimator: str | None, walk_path: WalkPath | None = None
+    bus: Bus,
+    spec: str,
+    speed: float | None,
+    estimator: str | None,
+    walk_path: WalkPath | None = None,
+    known_rhythms: list[KnownRhythm] | None = None,
 ) -> SessionDescription:
     """Ask an ingest to play a source as a live session. `speed` None: as fast as the services follow.
 
     Raises NotStarted with the reason that ingest gave, or with what to do when no ingest answers.
     """
-    order = {"source": spec, "speed": speed, "estimator": estimator, "walk_path": walk_path, "session": None}
+    known = None if known_rhythms is None else [each.model_dump(mode="json") for each in known_rhythms]
+    order = {
+        "source": spec,
+        "speed": speed,
+        "estimator": estimator,
+        "walk_path": walk_path,
+        "known_rhythms": known,
+        "session": None,
+    }
     replies = bus.ask(command_key(bus.settings.site, "ingest", "start"), body=json.dumps(order).encode(), timeout_s=30)
     if not replies:
         raise NotStarted("no ingest answers; start the services with `ambula up` first")

@@ -11,10 +11,12 @@ from rich.progress import BarColumn, Progress, TextColumn, TimeRemainingColumn
 from schemas.gait import GaitEvent, Stride
 from schemas.kinematics import JointState
 from schemas.metrics import SessionMetrics
+from schemas.rhythm import KnownRhythm, LearnedRhythm
 from schemas.session import WalkPath
 from schemas.vocabulary import BODY_MODELS
 from services.cli import tables
 from services.cli.assembly import build_chain
+from services.cli.rhythms import FILE_NAME
 from services.flow.chain import Chain
 from services.flow.message import Message
 from services.ingest.source import Source, iter_messages, open_source
@@ -30,6 +32,7 @@ class RunFiles:
         self.events = tables.event_table(folder / "events.csv")
         self.strides = tables.stride_table(folder / "strides.csv")
         self.metrics: SessionMetrics | None = None
+        self.rhythm: LearnedRhythm | None = None
 
     def take(self, message: Message) -> None:
         """File one message of the chain."""
@@ -43,21 +46,30 @@ class RunFiles:
                 self.strides.write(tables.stride_row(stride))
             case SessionMetrics() as metrics:
                 self.metrics = metrics
+            case LearnedRhythm() as rhythm:
+                self.rhythm = rhythm
 
     def close(self, header: dict[str, Any]) -> None:
-        """Finish the tables and write metrics.json."""
+        """Finish the tables, write metrics.json and, if a rhythm was learned, its file."""
         for table in (self.angles, self.events, self.strides):
             with table:
                 pass
         body = {} if self.metrics is None else json.loads(self.metrics.model_dump_json())
         (self.folder / "metrics.json").write_text(json.dumps(header | body, indent=2) + "\n", encoding="utf-8")
+        if self.rhythm is not None:
+            (self.folder / FILE_NAME).write_text(self.rhythm.model_dump_json(indent=2) + "\n", encoding="utf-8")
 
 
 def run(
-    spec: str, estimator: str | None, folder: Path, console: Console, walk_path: WalkPath | None = None
+    spec: str,
+    estimator: str | None,
+    folder: Path,
+    console: Console,
+    walk_path: WalkPath | None = None,
+    known_rhythms: list[KnownRhythm] | None = None,
 ) -> dict[str, Any]:
     """Run a source to its end; the header of metrics.json. Raises SourceError for a source that cannot be read."""
-    source = open_source(spec, estimator=estimator, walk_path=walk_path)
+    source = open_source(spec, estimator=estimator, walk_path=walk_path, known_rhythms=known_rhythms)
     description = source.describe()
     chain = build_chain(description)
     files = RunFiles(folder)
@@ -85,6 +97,7 @@ def _header(source: Source, chain: Chain) -> dict[str, Any]:
         "title": description.title,
         "estimator": description.estimator,
         "walk_path": description.walk_path,
+        "known_rhythms": [{"kind": known.kind, "name": known.name} for known in description.known_rhythms],
         "definitions": tables.STRIDE_DEFINITION,
         "rejections": [rejection.model_dump(mode="json") for rejection in rejections],
     }
