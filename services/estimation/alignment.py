@@ -133,6 +133,11 @@ class AxisSearch:
         self.reference = reference
         self.parameters = parameters
 
+    @property
+    def needs_no_axis(self) -> bool:
+        """Only the lower back wears a sensor, and its frame comes from its placement."""
+        return all(sensor.segment is Segment.PELVIS for sensor in self.sensors)
+
     def up(self, s: int) -> Array:
         """Standing vertical of a sensor, (3,)."""
         return normalised(self.reference.mean_force[s])
@@ -191,7 +196,7 @@ class AxisSearch:
         A sensor on the lower back alone has no axis to wait for.
         """
         limits = self.parameters
-        if all(sensor.segment is Segment.PELVIS for sensor in self.sensors):
+        if self.needs_no_axis:
             return True
         return bool(axes) and all(
             axis.moving_s >= limits.shortest_moving_s * (1.0 if axis.sign_is_placed else 2.0)
@@ -203,8 +208,8 @@ class AxisSearch:
         )
 
     def is_moving(self, axes: dict[int, FlexionAxis]) -> bool:
-        """Some leg sensor has moved enough to tell an axis."""
-        return any(axis.moving_s >= self.parameters.shortest_moving_s for axis in axes.values())
+        """Some leg sensor has moved enough to tell an axis; the lower back alone needs none."""
+        return self.needs_no_axis or any(axis.moving_s >= self.parameters.shortest_moving_s for axis in axes.values())
 
     def align(self, axes: dict[int, FlexionAxis]) -> Alignment:
         """Frames of all sensors that standing and the axes allow."""

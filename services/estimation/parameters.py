@@ -66,6 +66,9 @@ class WalkingParameters:
     fewest_strides: int = 3  # regular straight strides; a short walk has no more
     cutoff_hz: float = 5.0  # Hz, gyro low-pass before swings are counted
     slowest_swing: float = 1.0  # rad/s of a shank or thigh in swing; slow walkers stay above
+    step_cutoff_hz: float = 3.0  # Hz, low-pass of the trunk's specific force before its steps are counted
+    smallest_catch: float = 0.6  # m/s^2 by which that force rises in a step, as in segmentation
+    flat_rate: float = 0.6  # rad/s below which a foot is flat on the ground
     shortest_stride_s: float = 0.6  # s
     longest_stride_s: float = 3.0  # s; sit-to-stand repeats every 3.5 s
     straightest: float = 0.5  # rad that a sensor may have turned over one stride

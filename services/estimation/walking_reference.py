@@ -61,8 +61,10 @@ def refer_to_walking(
         return None
     rows = np.concatenate([np.arange(*span) for span in strides])
     mean = _mean(samples[rows], fresh[rows])
-    seen = np.any(fresh[rows], axis=0)
-    if not _is_alike(samples, fresh, strides, mean, seen, standing):
+    telling = _telling_verticals(sensors, samples, fresh, walking)
+    mean[:, FORCE] = _mean(samples[rows], telling[rows])[:, FORCE]
+    seen = np.any(telling[rows], axis=0)
+    if not _is_alike(samples, telling, strides, mean, seen, standing):
         return None
     gravity = np.linalg.norm(mean[:, FORCE], axis=1)
     wrong = seen & (np.abs(gravity - standing.gravity) > walking.gravity_tolerance)
@@ -88,6 +90,20 @@ def lean(alignment: Alignment, sensors: Sequence[SensorDescription], walking: Wa
     return Alignment(frames, np.minimum(alignment.quality, walking.best_quality), alignment.aligned)
 
 
+def _telling_verticals(
+    sensors: Sequence[SensorDescription], samples: Array, fresh: Flags, walking: WalkingParameters
+) -> Flags:
+    """(n, S) samples whose mean specific force points up: those of whole strides, but of a foot only while it is flat.
+
+    A foot turns so fast in swing that its mean specific force is 14 m/s^2 long.
+    """
+    telling = fresh.copy()
+    for s, sensor in enumerate(sensors):
+        if sensor.segment in FEET:
+            telling[:, s] &= np.linalg.norm(samples[:, s, RATE], axis=1) < walking.flat_rate
+    return telling
+
+
 def _strides(
     sensors: Sequence[SensorDescription], samples: Array, fresh: Flags, walking: WalkingParameters
 ) -> list[Span]:
@@ -101,7 +117,24 @@ def _strides(
         best = max(found, key=len, default=[])
         if len(best) > walking.fewest_strides:
             return [Span(first, last) for first, last in pairwise(best)]
+    if all(sensor.segment is Segment.PELVIS for sensor in sensors):
+        # Two steps are a stride.
+        steps = max(
+            (_steps(samples[:, s], fresh[:, s], each.rate_hz, walking) for s, each in enumerate(sensors)), key=len
+        )
+        return [Span(first, last) for first, last in pairwise(steps[::2])]
     return []
+
+
+def _steps(samples: Array, fresh: Flags, rate_hz: float, walking: WalkingParameters) -> list[int]:
+    """Ticks at which the trunk is caught, once a step: the specific force is largest, however the sensor lies."""
+    rows = np.flatnonzero(fresh)
+    if len(rows) < rate_hz * walking.shortest_stride_s:
+        return []
+    force = low_pass(np.linalg.norm(samples[rows, FORCE], axis=1), walking.step_cutoff_hz, rate_hz)
+    distance = max(1, round(0.5 * walking.shortest_stride_s * rate_hz))
+    peaks, _ = find_peaks(force, prominence=walking.smallest_catch, distance=distance)
+    return [int(rows[peak]) for peak in peaks]
 
 
 def _swings(samples: Array, fresh: Flags, rate_hz: float, walking: WalkingParameters) -> list[int]:

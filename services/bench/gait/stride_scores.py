@@ -115,18 +115,35 @@ class Matched:
         return round(float(np.std(self.errors_s, ddof=1)) * 1e3, 1) if len(self.errors_s) > 1 else None
 
 
-def match(true_s: Array, found_s: Array) -> Matched:
-    """Pair each true event with the nearest found one that is not taken yet, within MATCH_S; nearest pairs first."""
+def pairs(true_s: Array, found_s: Array) -> list[tuple[int, int]]:
+    """Indices of each true event and the nearest found one not taken yet, within MATCH_S; nearest pairs first."""
     gaps = sorted((abs(f - t), i, j) for i, t in enumerate(true_s) for j, f in enumerate(found_s))
+    taken: list[tuple[int, int]] = []
     taken_true: set[int] = set()
     taken_found: set[int] = set()
-    errors = []
     for gap, i, j in gaps:
         if gap <= MATCH_S and i not in taken_true and j not in taken_found:
             taken_true.add(i)
             taken_found.add(j)
-            errors.append(found_s[j] - true_s[i])
+            taken.append((i, j))
+    return taken
+
+
+def match(true_s: Array, found_s: Array) -> Matched:
+    """The errors of the pairs, and how many events have no partner."""
+    errors = [found_s[j] - true_s[i] for i, j in pairs(true_s, found_s)]
     return Matched(np.array(errors), len(true_s) - len(errors), len(found_s) - len(errors))
+
+
+def stride_time_errors_s(true_s: Array, found_s: Array) -> Array:
+    """Errors (k,) s of the times between neighbouring events of one foot, where both were found."""
+    partner = dict(pairs(true_s, found_s))
+    errors = [
+        (found_s[partner[i + 1]] - found_s[partner[i]]) - (true_s[i + 1] - true_s[i])
+        for i in range(len(true_s) - 1)
+        if i in partner and i + 1 in partner
+    ]
+    return np.array(errors)
 
 
 def together(parts: Iterable[Matched]) -> Matched:

@@ -3,6 +3,7 @@
 Everything passes the whole chain, sensors to strides. The baseline is the plain EKF in the place of the default.
 """
 
+from collections.abc import Set
 from pathlib import Path
 from typing import NamedTuple
 
@@ -10,8 +11,9 @@ import numpy as np
 
 from schemas.gait import GaitEvent, Stride
 from schemas.imu import ReferenceBatch
-from schemas.vocabulary import GaitEventKind, Side
+from schemas.vocabulary import GaitEventKind, Segment, Side
 from services.bench.gait.stride_scores import Found, Matched, Truth, length_errors, match, together
+from services.bench.gait.worn import wearing, worn_only
 from services.bench.scoreboard import Row, Scoreboard, at_most, informative
 from services.cli.assembly import build_chain
 from services.ingest.errors import SourceError
@@ -41,12 +43,12 @@ class Run(NamedTuple):
     truth: Truth
 
 
-def through_chain(spec: str, estimator: str) -> Run:
-    """Run a source to its end. Raises SourceError when it cannot be read."""
+def through_chain(spec: str, estimator: str, worn: Set[Segment] = frozenset(Segment)) -> Run:
+    """Run a source to its end, as if only these segments had a sensor. Raises SourceError when it cannot be read."""
     source = open_source(spec, estimator=estimator)
     description = source.describe()
-    chain, found, truth = build_chain(description), Found(), Truth(description)
-    for message in iter_messages(source):
+    chain, found, truth = build_chain(wearing(description, worn)), Found(), Truth(description)
+    for message in worn_only(iter_messages(source), description, worn):
         if isinstance(message.payload, ReferenceBatch):
             truth.take(message.payload)
         for produced in chain.push(message):

@@ -3,7 +3,6 @@ import pytest
 
 from schemas.vocabulary import GaitEventKind
 from services.bench.gait.events import TEMPLATE, Judged, detected_share, event_rows, run
-from services.bench.gait.foot_events import forward_rate, swing_events
 from services.bench.gait.force_plates import PlateWalk, manifest_of, settled_edges
 from services.bench.gait.stride_scores import match
 from services.ingest.manifest import load_manifest
@@ -58,23 +57,11 @@ def test_nothing_found_is_a_missed_row():
 
 
 def test_an_unknown_subject_is_refused():
-    with pytest.raises(ValueError, match="choose S01, S05, feet or all"):
+    with pytest.raises(ValueError, match="choose zju, S01, S05, voisard, gaitmap, mobgap or all"):
         run(None, "S99")
 
 
 def test_without_the_recordings_the_table_says_so(monkeypatch):
     monkeypatch.setattr("services.ingest.data.data_folders", list)
-    for subject in ("S05", "feet"):
+    for subject in ("S05", "voisard", "gaitmap", "mobgap"):
         assert [(row.value, row.met) for row in run(None, subject).rows] == [(None, None)]
-
-
-@pytest.mark.parametrize("flipped", [1, -1])
-def test_the_forward_rate_of_a_foot_is_found_whichever_way_the_sensor_lies(flipped):
-    time_s = np.arange(0, 12.0, 0.01)
-    # Per stride: back briefly at heel-off, forward in swing, back before the toes come down.
-    within = time_s % 1.2
-    rate = 3.0 * np.where((within > 0.6) & (within < 1.0), np.sin((within - 0.6) / 0.4 * np.pi), 0.0)
-    rate -= 6.0 * np.where((within > 0.4) & (within < 0.6), np.sin((within - 0.4) / 0.2 * np.pi), 0.0)
-    axis = np.array([0.6, 0.0, 0.8])
-    np.testing.assert_allclose(forward_rate(flipped * np.outer(rate, axis)), rate, atol=1e-9)
-    assert len(swing_events(rate)[IC]) == 10
