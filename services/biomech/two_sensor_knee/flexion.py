@@ -35,15 +35,32 @@ def twist(relative: FloatArray, axes: FloatArray, across: FloatArray) -> float:
 @compiled
 def follow_angle(memory: Memory, bench: Bench, is_moving: bool, dt_s: float) -> None:
     """Unwrap the angle, settle its sign, and say where its zero is."""
-    knee = memory.knee[0]
+    knee, parameters = memory.knee[0], bench.parameters[0]
     knee.angle += wrapped(twist(bench.relative, memory.axes, memory.across) - knee.angle)
-    if knee.is_zero_set == 0.0 and is_standing(memory, bench.parameters[0]):
-        zero = angle_of_verticals(memory.standing, memory.axes, memory.across)
-        # The same turn of the circle as the angle: a knee bends by less than half a turn either way.
-        knee.zero = knee.angle + wrapped(zero - knee.angle)
     if is_moving:
-        follow_posture(memory, sensor_height(memory, bench.R[THIGH, 1], bench.R[SHANK, 1]), dt_s)
-        settle_sign(memory, bench.parameters[0])
+        height = sensor_height(memory, bench.R[THIGH, 1], bench.R[SHANK, 1])
+        follow_posture(memory, height, upright_share(memory, THIGH, bench.R[THIGH, 1]), dt_s)
+        settle_zero(memory, parameters)
+        settle_sign(memory, parameters)
+
+
+@compiled
+def settle_zero(memory: Memory, parameters: Record) -> None:
+    """Zero = the angle of the tallest rest, if that was standing: upright, and the knee moves to one side of it only.
+
+    Sitting on a bicycle is upright enough, but there the knee moves to both sides.
+    """
+    knee, posture = memory.knee[0], memory.posture[0]
+    if knee.is_zero_set > 0.0 or not is_upright(memory, parameters):
+        return
+    angle = posture.angle / posture.weight
+    variance = max(posture.angle2 / posture.weight - angle * angle, 0.0)
+    zero = angle_of_verticals(memory.standing, memory.axes, memory.across)
+    # The same turn of the circle as the angle: a knee bends by less than half a turn either way.
+    zero = angle + wrapped(zero - angle)
+    is_one_sided = (angle - zero) ** 2 > parameters.one_sided**2 * variance
+    knee.is_standing = 1.0 if is_one_sided else 0.0
+    knee.zero = zero if is_one_sided else 0.0
 
 
 @compiled
@@ -65,19 +82,33 @@ def take_standing(memory: Memory, bench: Bench) -> None:
 
 
 @compiled
-def is_standing(memory: Memory, parameters: Record) -> bool:
-    """Whether the tallest rest was standing: the knee below the thigh's sensor and above the shank's."""
+def is_upright(memory: Memory, parameters: Record) -> bool:
+    """Whether at the tallest rest the knee was below the thigh's sensor and above the shank's."""
     if memory.knee[0].has_standing == 0.0:
         return False
-    for s in range(2):
-        down, length = 0.0, 0.0
-        for i in range(3):
-            down -= memory.standing[s, i] * memory.arms[s, i]
-            length += memory.arms[s, i] ** 2
-        upright = down if s == THIGH else -down
-        if upright < parameters.upright_share * sqrt(length) or length == 0.0:
-            return False
-    return True
+    thigh = upright_share(memory, THIGH, memory.standing[THIGH])
+    shank = upright_share(memory, SHANK, memory.standing[SHANK])
+    if arm_length(memory, SHANK) < parameters.shortest_arm:
+        shank = 1.0
+    is_known = arm_length(memory, THIGH) >= parameters.shortest_arm
+    return bool(is_known and min(thigh, shank) >= parameters.upright_share)
+
+
+@compiled
+def arm_length(memory: Memory, segment: int) -> float:
+    """Distance from a sensor to the knee, m."""
+    x, y, z = memory.arms[segment, 0], memory.arms[segment, 1], memory.arms[segment, 2]
+    return sqrt(x * x + y * y + z * z)
+
+
+@compiled
+def upright_share(memory: Memory, segment: int, up: FloatArray) -> float:
+    """Vertical share of a segment's direction: down the thigh from its sensor to the knee, on to the shank's."""
+    down = 0.0
+    for i in range(3):
+        down -= up[i] * memory.arms[segment, i]
+    length = arm_length(memory, segment) + 1e-9
+    return down / length if segment == THIGH else -down / length
 
 
 @compiled
@@ -104,13 +135,14 @@ def sensor_height(memory: Memory, up_thigh: FloatArray, up_shank: FloatArray) ->
 
 
 @compiled
-def follow_posture(memory: Memory, height: float, dt_s: float) -> None:
+def follow_posture(memory: Memory, height: float, upright: float, dt_s: float) -> None:
     """Running moments of angle and height, forgotten over half a minute of motion."""
     posture, angle = memory.posture[0], memory.knee[0].angle
     keep = 1.0 - low_pass_gain(POSTURE_MEMORY_S, dt_s)
     posture.weight = keep * posture.weight + dt_s
     posture.angle = keep * posture.angle + dt_s * angle
     posture.height = keep * posture.height + dt_s * height
+    posture.upright = keep * posture.upright + dt_s * upright
     posture.angle_height = keep * posture.angle_height + dt_s * angle * height
     posture.angle2 = keep * posture.angle2 + dt_s * angle * angle
     posture.height2 = keep * posture.height2 + dt_s * height * height
@@ -120,8 +152,9 @@ def follow_posture(memory: Memory, height: float, dt_s: float) -> None:
 def settle_sign(memory: Memory, parameters: Record) -> None:
     """Turn both axes round when the motion seen so far speaks against them.
 
-    Two witnesses, each within +-1: flexion brings the sensors' heights together, so the angle falls with the height;
-    and from standing a knee can only bend, so the moving knee's mean lies on the positive side of a standing zero.
+    Two witnesses, each within +-1: over an upright thigh flexion brings the sensors' heights together, so the angle
+    falls with the height; and from standing a knee can only bend, so the moving knee's mean lies on the positive side
+    of a standing zero. A seated leg lifts the shank by extending: its height says nothing.
     """
     posture, knee = memory.posture[0], memory.knee[0]
     if parameters.sign_evidence == 0.0:
@@ -134,9 +167,12 @@ def settle_sign(memory: Memory, parameters: Record) -> None:
     height_variance = posture.height2 / posture.weight - height * height
     if angle_variance < SIGN_SPREAD**2 or height_variance < 1e-6:
         return
-    covariance = posture.angle_height / posture.weight - angle * height
-    evidence = -covariance / sqrt(angle_variance * height_variance)
-    if knee.is_zero_set > 0.0 or is_standing(memory, parameters):
+    evidence = 0.0
+    is_upright_thigh = posture.upright / posture.weight >= parameters.upright_share
+    if is_upright_thigh and arm_length(memory, THIGH) >= parameters.shortest_arm:
+        covariance = posture.angle_height / posture.weight - angle * height
+        evidence = -covariance / sqrt(angle_variance * height_variance)
+    if knee.is_zero_set > 0.0 or knee.is_standing > 0.0:
         evidence += min(max((angle - knee.zero) / sqrt(angle_variance), -1.0), 1.0)
     if evidence < -parameters.sign_evidence:
         memory.axes[:] *= -1.0

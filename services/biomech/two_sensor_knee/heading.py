@@ -10,10 +10,12 @@ from math import atan2, sqrt
 from services.biomech.two_sensor_knee.compiled import compiled
 from services.biomech.two_sensor_knee.joint_centre import is_joint_trusted
 from services.biomech.two_sensor_knee.memory import SHANK, THIGH, Bench, Memory
-from services.biomech.two_sensor_knee.turns import wrapped
+from services.biomech.two_sensor_knee.turns import fill_relative, wrapped
 
 JOINT_HEADING_STD = 0.35
 """rad. Of a heading told by the shared joint; measured on people."""
+RATES_HEADING_STD = 0.7
+"""rad. Of a heading told by the directions of both rates."""
 
 
 @compiled
@@ -51,18 +53,43 @@ def take_joint_heading(memory: Memory, bench: Bench) -> None:
         knee.contradictions = knee.contradictions + 1.0 if contradicts else 0.0
         if knee.contradictions < parameters.heading_contradictions:
             return
-    begin_hinge(memory)
+    begin_hinge(memory, bench, knee.joint_heading, JOINT_HEADING_STD)
 
 
 @compiled
-def begin_hinge(memory: Memory) -> None:
-    """Take the joint's heading; forget axis, angle and posture."""
+def tie_without_joint(memory: Memory, bench: Bench, dt_s: float) -> None:
+    """Where the knee rests while the leg moves (a swinging shank, a rising thigh) nothing tells the heading but that
+    both segments turn about one horizontal line: half the angle of the mean of (h1 conj h2)^2 / |h1 conj h2|.
+
+    Half a turn stays open; while one segment is still any heading gives the same flexion, and when both move the
+    shared joint will contradict a wrong one.
+    """
+    knee, parameters, R, rate = memory.knee[0], bench.parameters[0], bench.R, bench.rate
+    z1 = R[0, 2, 0] * rate[0, 0] + R[0, 2, 1] * rate[0, 1] + R[0, 2, 2] * rate[0, 2]
+    x1 = R[0, 0, 0] * rate[0, 0] + R[0, 0, 1] * rate[0, 1] + R[0, 0, 2] * rate[0, 2]
+    z2 = R[1, 2, 0] * rate[1, 0] + R[1, 2, 1] * rate[1, 1] + R[1, 2, 2] * rate[1, 2]
+    x2 = R[1, 0, 0] * rate[1, 0] + R[1, 0, 1] * rate[1, 1] + R[1, 0, 2] * rate[1, 2]
+    real, imaginary = z1 * z2 + x1 * x2, x1 * z2 - z1 * x2
+    length = sqrt(real * real + imaginary * imaginary)
+    if length > 0.0:
+        knee.rates_real += dt_s * (real * real - imaginary * imaginary) / length
+        knee.rates_imaginary += dt_s * 2.0 * real * imaginary / length
+    if max(z1 * z1 + x1 * x1, z2 * z2 + x2 * x2) > parameters.moving_rate**2:
+        knee.untied_moving_s += dt_s
+    if knee.untied_moving_s >= parameters.untied_s:
+        begin_hinge(memory, bench, 0.5 * atan2(knee.rates_imaginary, knee.rates_real), RATES_HEADING_STD)
+
+
+@compiled
+def begin_hinge(memory: Memory, bench: Bench, heading: float, std: float) -> None:
+    """Begin with this heading (rad, and its deviation); forget axis, angle and posture."""
     knee = memory.knee[0]
-    knee.heading, knee.heading_variance = knee.joint_heading, JOINT_HEADING_STD**2
+    knee.heading, knee.heading_variance = heading, std**2
     knee.is_tied, knee.contradictions, knee.moving_s = 1.0, 0.0, 0.0
-    knee.angle, knee.zero, knee.is_zero_set, knee.is_sign_known = 0.0, 0.0, 0.0, 0.0
+    knee.angle, knee.zero, knee.is_zero_set, knee.is_sign_known, knee.is_standing = 0.0, 0.0, 0.0, 0.0, 0.0
     memory.scatter[:] = 0.0
     memory.axes[:] = 0.0
     posture = memory.posture[0]
-    posture.weight = posture.angle = posture.height = 0.0
+    posture.weight = posture.angle = posture.height = posture.upright = 0.0
     posture.angle_height = posture.angle2 = posture.height2 = 0.0
+    fill_relative(bench.R[THIGH], bench.R[SHANK], heading, memory.relative)

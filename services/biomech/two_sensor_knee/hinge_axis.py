@@ -14,7 +14,7 @@ from services.biomech.two_sensor_knee.memory import SHANK, THIGH, Bench, FloatAr
 @compiled
 def follow_axis(memory: Memory, bench: Bench, dt_s: float) -> bool:
     """Add the sample's relative rate to both scatters and move both axes; False when it is too slow to tell."""
-    knee, parameters, relative, rate = memory.knee[0], bench.parameters[0], bench.relative, bench.rate
+    knee, parameters, relative, rate = memory.knee[0], bench.parameters[0], bench.midway, bench.rate
     in_thigh = (
         relative[0, 0] * rate[1, 0] + relative[0, 1] * rate[1, 1] + relative[0, 2] * rate[1, 2] - rate[0, 0],
         relative[1, 0] * rate[1, 0] + relative[1, 1] * rate[1, 1] + relative[1, 2] * rate[1, 2] - rate[0, 1],

@@ -34,7 +34,10 @@ def follow_joint(memory: Memory, bench: Bench, force: FloatArray, dt_s: float) -
     if knee.since_products_s < parameters.joint_interval_s - 0.5 * dt_s:
         return False
     forgetting = exp(-knee.since_products_s / parameters.joint_memory_s)
-    add_products(memory, forgetting, knee.since_products_s, parameters.joint_power)
+    add_products(memory, forgetting, knee.since_products_s)
+    knee.joint_moving_s *= forgetting
+    if knee.joint_power > parameters.joint_power and largest_square(bench.rate) > parameters.moving_rate**2:
+        knee.joint_moving_s += knee.since_products_s
     knee.since_products_s = 0.0
     if knee.since_solution_s < parameters.joint_solve_s:
         return False
@@ -73,7 +76,7 @@ def low_pass_columns(
 
 
 @compiled
-def add_products(memory: Memory, forgetting: float, dt_s: float, motion_power: float) -> None:
+def add_products(memory: Memory, forgetting: float, dt_s: float) -> None:
     """Forget, and add the products of the eight columns, weighed by time."""
     joint = memory.joint
     for i in range(8):
@@ -91,9 +94,14 @@ def add_products(memory: Memory, forgetting: float, dt_s: float, motion_power: f
     knee = memory.knee[0]
     power = joint[0, 2, 0] ** 2 + joint[0, 0, 0] ** 2
     knee.joint_power += low_pass_gain(1.0, dt_s) * (power - knee.joint_power)
-    knee.joint_moving_s *= forgetting
-    if knee.joint_power > motion_power:
-        knee.joint_moving_s += dt_s
+
+
+@compiled
+def largest_square(rate: FloatArray) -> float:
+    """Square of the faster sensor's rate, (rad/s)^2."""
+    first = rate[0, 0] ** 2 + rate[0, 1] ** 2 + rate[0, 2] ** 2
+    second = rate[1, 0] ** 2 + rate[1, 1] ** 2 + rate[1, 2] ** 2
+    return max(first, second)
 
 
 @compiled

@@ -20,11 +20,10 @@ from services.biomech.two_sensor_knee.compiled import compiled
 from services.biomech.two_sensor_knee.flexion import (
     angle_deviation,
     follow_angle,
-    is_standing,
     take_standing,
     turn_from_sensor_axes,
 )
-from services.biomech.two_sensor_knee.heading import take_joint_heading, tie
+from services.biomech.two_sensor_knee.heading import take_joint_heading, tie, tie_without_joint
 from services.biomech.two_sensor_knee.hinge_axis import axis_deviation, follow_axis
 from services.biomech.two_sensor_knee.joint_centre import follow_joint
 from services.biomech.two_sensor_knee.levelling import follow_level
@@ -93,6 +92,8 @@ def advance(memory: Memory, bench: Bench, rate: FloatArray, force: FloatArray, d
     take_standing(memory, bench)
     if follow_joint(memory, bench, force, interval_s):
         take_joint_heading(memory, bench)
+    if knee.is_tied == 0.0:
+        tie_without_joint(memory, bench, interval_s)
     if knee.is_tied > 0.0:
         follow_hinge(memory, bench, interval_s)
 
@@ -102,6 +103,9 @@ def follow_hinge(memory: Memory, bench: Bench, dt_s: float) -> None:
     """Axis, heading and angle of the sample, once the headings are tied."""
     knee, parameters, output = memory.knee[0], bench.parameters[0], bench.output
     fill_relative(bench.R[THIGH], bench.R[SHANK], knee.heading, bench.relative)
+    for i in range(3):
+        for k in range(3):
+            bench.midway[i, k] = 0.5 * (bench.relative[i, k] + memory.relative[i, k])
     is_moving = follow_axis(memory, bench, dt_s)
     axis_std = axis_deviation(memory, bench)
     output[4] = axis_std
@@ -109,6 +113,9 @@ def follow_hinge(memory: Memory, bench: Bench, dt_s: float) -> None:
         return
     tie(memory, bench, axis_std, dt_s)
     fill_relative(bench.R[THIGH], bench.R[SHANK], knee.heading, bench.relative)
+    for i in range(3):
+        for k in range(3):
+            memory.relative[i, k] = bench.relative[i, k]
     follow_angle(memory, bench, is_moving, dt_s)
     axes, rate = memory.axes, bench.rate
     output[1] = angle_deviation(memory, bench, axis_std)
@@ -189,7 +196,7 @@ class KneeAxis:
         datum = Datum.START
         if knee["is_zero_set"] > 0.0:
             datum = Datum.SET
-        elif is_standing(self._memory, self._bench.parameters[0]):
+        elif knee["is_standing"] > 0.0:
             datum = Datum.STANDING
         return KneeReading(
             flexion, std, is_valid > 0.0, rate, axis_std, bool(knee["is_sign_known"] > 0.0),

@@ -53,15 +53,21 @@ KNEE = np.dtype(
         ("angle", np.float64),  # rad, unwrapped, from the pose at which the headings were tied
         ("zero", np.float64),  # rad, the datum in terms of `angle`
         ("is_zero_set", np.float64),
-        ("has_standing", np.float64),
+        ("has_standing", np.float64),  # a rest is remembered
+        ("is_standing", np.float64),  # and it was standing
+        ("untied_moving_s", np.float64),  # of motion without a tie
+        ("rates_real", np.float64),  # direction of both horizontal rates, squared: see heading.py
+        ("rates_imaginary", np.float64),
         ("is_sign_known", np.float64),
         ("unused_s", np.float64),  # time of samples that could not be used
         ("has_sample", np.float64),
     ]
 )
 
-POSTURE = np.dtype([(name, np.float64) for name in ("weight", "angle", "height", "angle_height", "angle2", "height2")])
-"""Running moments of the angle and of the height of the thigh's sensor over the shank's."""
+POSTURE = np.dtype(
+    [(name, np.float64) for name in ("weight", "angle", "height", "upright", "angle_height", "angle2", "height2")]
+)
+"""Running moments in motion: angle, height of the thigh's sensor over the shank's, vertical share of the thigh."""
 
 PARAMETERS = np.dtype([(field.name, np.float64) for field in fields(KneeAxisParameters)])
 OUTPUTS = ("flexion", "flexion_std", "is_valid", "flexion_rate", "axis_std", "flexion_from_sensor_axes")
@@ -84,6 +90,7 @@ class Memory(NamedTuple):
     axes: FloatArray  # (2, 3) flexion axis in each sensor
     across: FloatArray  # (2, 3) direction across the axis; both agree where the angle is 0
     standing: FloatArray  # (2, 3) the vertical in each sensor at the tallest rest
+    relative: FloatArray  # (3, 3) R_thigh_from_shank at the last sample
 
 
 class Bench(NamedTuple):
@@ -93,6 +100,7 @@ class Bench(NamedTuple):
     rate: FloatArray  # (2, 3) rad/s, bias removed
     R: FloatArray  # (2, 3, 3) R_world_from_sensor
     relative: FloatArray  # (3, 3) R_thigh_from_shank
+    midway: FloatArray  # (3, 3) the same in the middle of the interval, which the rates are the mean of
     normal: FloatArray  # (7, 7) scratch of the joint centre
     output: FloatArray  # (len(OUTPUTS),)
 
@@ -107,6 +115,7 @@ def allocate_memory(parameters: KneeAxisParameters) -> Memory:
         "rate_before": (2, 3), "joint_fast": (2, 3, 4), "joint": (2, 3, 4), "vertical": (8, 8),
         "horizontal_real": (8, 8), "horizontal_imaginary": (8, 8), "arms": (2, 3), "scatter": (2, 3, 3),
         "axes": (2, 3), "across": (2, 3), "standing": (2, 3),
+        "relative": (3, 3),
     }  # fmt: skip
     arrays = {name: np.zeros(shape) for name, shape in shapes.items()}
     return Memory(levels=levels, knee=np.zeros(1, KNEE), posture=np.zeros(1, POSTURE), **arrays)
@@ -119,6 +128,7 @@ def prepare_bench(parameters: KneeAxisParameters) -> Bench:
         rate=np.zeros((2, 3)),
         R=np.zeros((2, 3, 3)),
         relative=np.zeros((3, 3)),
+        midway=np.zeros((3, 3)),
         normal=np.zeros((7, 7)),
         output=np.zeros(len(OUTPUTS)),
     )

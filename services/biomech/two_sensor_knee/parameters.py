@@ -55,7 +55,7 @@ class JointParameters:
     """s between solutions."""
     joint_motion_s: float = 1.5
     """s of motion before a first solution is believed. [T]"""
-    joint_power: float = 0.25
+    joint_power: float = 0.05
     """(m/s^2)^2. Mean square horizontal acceleration of the joint that counts as motion. [T]"""
     joint_coherence: float = 0.5
     """Share of the acceleration that both sensors must agree on. [T]"""
@@ -79,6 +79,8 @@ class HingeParameters:
     """rad. Uncertainty of the axis at which it begins to tie the headings."""
     axis_to_believe: float = radians(25.0)
     """rad. Uncertainty of the axis at which the angle becomes valid."""
+    untied_s: float = 3.0
+    """s of motion after which the headings are tied without the joint."""
     heading_time_s: float = 3.0
     """s. Averaging of the heading told by a horizontal axis; longer as the axis becomes upright. [T]"""
     heading_drift: float = radians(0.3)
@@ -99,6 +101,10 @@ class HingeParameters:
     """m by which a later rest must be taller to become the standing datum."""
     upright_share: float = 0.6
     """Share of a sensor's arm to the knee that must be vertical for a rest to be standing."""
+    shortest_arm: float = 0.08
+    """m. A shorter arm to the knee was not seen well: nothing is concluded from its direction."""
+    one_sided: float = 0.5
+    """Deviations of the moving angle by which its mean must differ from that of a rest for it to be standing."""
     gap_s: float = 0.5
     """s. After a longer interval without samples both sensors are levelled anew."""
     largest_rate: float = 70.0

@@ -1,0 +1,1 @@
+"""The two-sensor knee against optical truth, published methods and synthetic legs."""
