@@ -62,8 +62,8 @@ def _mean(people: People, setting: Setting, place: tuple[int, int, int]) -> str:
     plain = np.array(
         [scores[Setting(setting.model, PLAIN, setting.S)].errors.rmse[place] for scores in people.values()]
     )
-    star = "*" if setting.estimator != PLAIN and is_smaller(ours, plain) else ""
-    return f"**{number(float(np.degrees(ours.mean())))}{star}**"
+    star = "\\*" if setting.estimator != PLAIN and is_smaller(ours, plain) else ""
+    return f"**{number(float(np.degrees(ours.mean())))}**{star}"
 
 
 def is_smaller(ours: FloatArray, theirs: FloatArray) -> bool:

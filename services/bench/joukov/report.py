@@ -23,9 +23,11 @@ def write_report(folder: Path, title: str, sections: Sequence[Section]) -> None:
     lines = [f"# {title}", "", HOW_TO_READ, "", *_findings(sections), *_summary(sections)]
     for place, section in enumerate(sections, 1):
         for name, svg in section.charts.items():
-            (folder / f"{name}.svg").write_text(svg)
+            (folder / f"{name}.svg").write_text(svg, encoding="utf-8")
         lines += ["", f"## {place}. {section.title}", "", *_section(section)]
-    (folder / "report.md").write_text("\n".join(lines) + "\n")
+    # The star of S* would begin an emphasis.
+    text = "\n".join(lines).replace("S*", "S\\*")
+    (folder / "report.md").write_text(text + "\n", encoding="utf-8")
 
 
 def _findings(sections: Sequence[Section]) -> list[str]:
