@@ -39,48 +39,56 @@ class TextbookEkf:
         self.n, self.t = len(model.dofs), model.first_rotation
         self.soft = model.soft
         self._soft_rows = np.eye(3 * self.n)[self.soft]
-        self._transitions: dict[float, tuple[Array, Array, Array]] = {}
+        self._transitions: dict[float, tuple[Array, Array, Array, Array]] = {}
         self.x = np.zeros(3 * self.n)
         starts = (noise.start_position_std, noise.start_velocity_std, noise.start_acceleration_std)
         self.P = np.diag(np.repeat(np.square(starts), self.n))
 
     def advance(self, dt_s: float, samples: Array, jerk: Array) -> None:
         """Predict over dt_s > 0 and fuse samples (S, 6) of all sensors; jerk (n,)."""
-        self._predict(dt_s, jerk)
+        F, g, Q_turning, Q_moving = self._transition(dt_s)
+        self.x = F @ self.x + np.kron(g, jerk)
         z, H, R = self._measurement(samples, dt_s)
+        self.P = F @ self.P @ F.T + self._density(z[: samples.size], dt_s) * Q_turning + Q_moving
         S = H @ self.P @ H.T + R
         K = self.P @ H.T @ np.linalg.inv(S)
         self.x = self.x + K @ z
         self.P = (np.eye(3 * self.n) - K @ H) @ self.P
         self.P = 0.5 * (self.P + self.P.T)
 
-    def _predict(self, dt_s: float, jerk: Array) -> None:
-        F, g, Q = self._transition(dt_s)
-        self.x = F @ self.x + np.kron(g, jerk)
-        self.P = F @ self.P @ F.T + Q
+    def _density(self, innovations: Array, dt_s: float) -> float:
+        """Density of the jerk, rad^2/s^5: wider where a gyroscope is farther off than any movement explains."""
+        largest = np.linalg.norm(innovations.reshape(-1, 2, 3)[:, 0], axis=1).max()
+        if largest <= self.noise.impact_rate:
+            return self.noise.jerk_density
+        return max(self.noise.jerk_density, float(2.0 * largest / self.noise.impact_deviations) ** 2 / dt_s**3)
 
-    def _transition(self, dt_s: float) -> tuple[Array, Array, Array]:
-        """F (3 n, 3 n), g (3,) and Q (3 n, 3 n), kept for the next step of the same length."""
+    def _transition(self, dt_s: float) -> tuple[Array, Array, Array, Array]:
+        """F (3 n, 3 n), g (3,), Q (3 n, 3 n) for rotations of unit density, and Q for translations.
+
+        Kept for the next step of the same length.
+        """
         if dt_s not in self._transitions:
             self._transitions[dt_s] = self._new_transition(dt_s)
         return self._transitions[dt_s]
 
-    def _new_transition(self, dt_s: float) -> tuple[Array, Array, Array]:
+    def _new_transition(self, dt_s: float) -> tuple[Array, Array, Array, Array]:
         one, h = np.eye(self.n), dt_s * dt_s / 2.0
         zero = np.zeros_like(one)
         F = np.block([[one, dt_s * one, h * one], [zero, one, dt_s * one], [zero, zero, one]])
         g = np.array([dt_s**3 / 6.0, h, dt_s])
         is_rotation = np.arange(self.n) >= self.t
-        Q = np.kron(np.outer(g, g) / dt_s, np.diag(is_rotation * self.noise.jerk_density))
-        Q[2 * self.n :, 2 * self.n :] += np.diag(~is_rotation * self.noise.translation_density * dt_s)
-        return np.asarray(F), g, np.asarray(Q)
+        turning = np.kron(np.outer(g, g) / dt_s, np.diag(1.0 * is_rotation))
+        moving = np.zeros_like(turning)
+        moving[2 * self.n :, 2 * self.n :] = np.diag(~is_rotation * self.noise.translation_density * dt_s)
+        return np.asarray(F), g, np.asarray(turning), moving
 
     def _measurement(self, samples: Array, dt_s: float) -> tuple[Array, Array, Array]:
         """Innovations, Jacobian and noise covariance of all rows."""
         x, wide = self.x.reshape(3, self.n), NOMINAL_DT_S / dt_s
         expected = self._sample_rows(x)
         yaws = self._yaw_rows(x[0])
-        z = [sample - value for sample, (value, _) in zip(samples, expected, strict=True)]
+        z = [self._believed(sample) - value for sample, (value, _) in zip(samples, expected, strict=True)]
         H = [rows.reshape(6, -1) for _, rows in expected] + [row[None] for _, row in yaws] + [self._soft_rows]
         variances = np.concatenate(
             [
@@ -91,6 +99,13 @@ class TextbookEkf:
         )
         innovations = [*z, np.array([yaw for yaw, _ in yaws]), -x[0, self.soft]]
         return np.concatenate(innovations), np.concatenate(H), np.diag(variances)
+
+    def _believed(self, sample: Array) -> Array:
+        """The sample (6,) with its specific force shortened to what a gravity sensor is believed."""
+        length = float(np.linalg.norm(sample[3:]))
+        if self.measurement.accel_sees_motion or length <= self.measurement.force_bound:
+            return sample
+        return np.concatenate([sample[:3], sample[3:] * (self.measurement.force_bound / length)])
 
     def _sample_rows(self, x: Array) -> list[tuple[Array, Array]]:
         """Expected sample (6,) and rows (6, 3, n) of each sensor."""

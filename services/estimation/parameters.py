@@ -4,7 +4,7 @@ from dataclasses import dataclass, field, replace
 from typing import Literal
 
 from schemas.session import SessionDescription
-from services.biomech.lower_body_ekf import MeasurementModel, NoiseModel
+from services.biomech.lower_body_ekf import NO_BOUND, MeasurementModel, NoiseModel
 from services.biomech.rhythm.parameters import TrustedParameters
 from services.biomech.single_joint.innovation_gate import InnovationGate
 
@@ -15,7 +15,7 @@ class CheckParameters:
 
     largest_rate: float = 40.0  # rad/s, above the range of worn gyroscopes (2000 deg/s = 35 rad/s)
     largest_force: float = 320.0  # m/s^2, above the range of worn accelerometers (32 g)
-    rate_jump: float = 12.0  # rad/s from one sample to the next; walking stays below 6 at 100 Hz
+    rate_jump: float = 25.0  # rad/s from one sample to the next at 100 Hz; walking stays below 6, landings reach 16
     force_jump: float = 250.0  # m/s^2 from one sample to the next; landings from a jump reach 200
     stuck_after: int = 25  # identical samples in a row; real sensors have noise in their last digit
     silent_after_s: float = 0.25  # s without a usable sample until a sensor counts as missing
@@ -106,7 +106,7 @@ class FilterParameters:
 
 PUBLISHED = FilterParameters(
     measurement=MeasurementModel(gyro_sees_position=True, accel_sees_motion=True),
-    noise=NoiseModel(accel_std=1.0, yaw_std=0.1),
+    noise=NoiseModel(accel_std=1.0, yaw_std=0.1, impact_rate=NO_BOUND),
     soft_knees=False,
     sample_delay=0.0,
 )

@@ -15,7 +15,7 @@ from services.biomech.kernels.compiled import inlined, kernel
 from services.biomech.kernels.evidence import bold_share
 from services.biomech.kernels.fixed import fixed
 from services.biomech.kernels.kinematics import accelerate, orient
-from services.biomech.kernels.measurement import column, expected_sample, forward_axis, yaw_of
+from services.biomech.kernels.measurement import column, expected_sample, forward_axis, subtract_from, yaw_of
 from services.biomech.kernels.tables import Array, Body, Companions, Flags, Motion, Options, Sensors, Update
 
 TURN = 2.0 * np.pi
@@ -41,10 +41,7 @@ def observe(
             if fresh[s]:
                 e = companions.innovation[c, s]
                 expected_sample(s, sensors, options, motion, e)
-                for i in range(6):
-                    e[i] = samples[s, i] - e[i]
-                for i in range(3):
-                    e[i] -= bias[s, i]
+                subtract_from(s, samples, bias, options.force_bound, e)
         for i in range(3):
             companions.heading[c, i] = yaw_of(forward_axis(options.yaw_bodies[i], motion))
 

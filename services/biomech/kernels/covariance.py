@@ -23,9 +23,10 @@ def predict_state(x: Array, dt: float, jerk: Array) -> None:
 
 @kernel
 def predict_covariance(
-    P: Array, dt: float, jerk_density: Array, translations: int, complete: int, width: Width
+    P: Array, dt: float, jerk_density: Array, least: float, translations: int, complete: int, width: Width
 ) -> None:
-    """P = F P F' + Q. F acts on rows, then on columns; Q = G G' S / dt with G = (dt^3/6, dt^2/2, dt) per rotation.
+    """P = F P F' + Q. F acts on rows, then on columns; Q = G G' S / dt with G = (dt^3/6, dt^2/2, dt) per rotation,
+    whose S is `least` or more.
 
     Rows from `complete` on are left stale before the diagonal block, see `subtract_gain`.
     """
@@ -43,7 +44,7 @@ def predict_covariance(
             P[i, r + k] += dt * P[i, 2 * r + k]
     g0, g1, g2 = dt * dt * dt / 6.0, h, dt
     for i in range(r):
-        S = jerk_density[translations + i] / dt
+        S = max(jerk_density[translations + i], least) / dt
         P[i, i] += g0 * g0 * S
         P[r + i, r + i] += g1 * g1 * S
         P[2 * r + i, 2 * r + i] += g2 * g2 * S

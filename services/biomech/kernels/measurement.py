@@ -105,6 +105,16 @@ def expected_sample(s: int, sensors: Sensors, options: Options, motion: Motion, 
 
 
 @kernel
+def subtract_from(s: int, samples: Array, bias: Array, force_bound: float, z: Array) -> None:
+    """z (6,) becomes the sample of sensor s without its bias, minus z. A force longer than the bound is shortened."""
+    length = math.sqrt(samples[s, 3] ** 2 + samples[s, 4] ** 2 + samples[s, 5] ** 2)
+    share = 1.0 if length <= force_bound else force_bound / length
+    for i in range(3):
+        z[i] = samples[s, i] - bias[s, i] - z[i]
+        z[i + 3] = share * samples[s, i + 3] - z[i + 3]
+
+
+@kernel
 def dynamic_rows(s: int, body: Body, sensors: Sensors, motion: Motion, z: Array, H: Array) -> None:
     """The accelerometer with the whole motion: z[3:6] = R' f with f = A + (0, g, 0) at the sensor.
 

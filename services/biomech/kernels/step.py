@@ -27,6 +27,7 @@ from services.biomech.kernels.measurement import (
     dynamic_rows,
     gravity_rows,
     gyro_rows,
+    subtract_from,
     yaw_row,
 )
 from services.biomech.kernels.tables import (
@@ -189,10 +190,24 @@ def linearise(
             continue
         e = update.innovation[s]
         predicted_sample(s, body, sensors, options, motion, e, update.H[s])
-        for i in range(6):
-            e[i] = samples[s, i] - e[i]
-        for i in range(3):
-            e[i] -= bias[s, i]
+        subtract_from(s, samples, bias, options.force_bound, e)
+
+
+@kernel
+def impact_jerk(dt: float, fresh: Flags, noise: Noise, update: Update) -> float:
+    """Least jerk density, rad^2/s^5: 0 unless a gyroscope is farther off its prediction than any movement explains.
+
+    Jerk j over dt adds e = j dt^2 / 2 to a rate, and white jerk of density S has the variance S / dt in an interval:
+    with S = 4 e^2 / (k^2 dt^3) the innovation e is k standard deviations.
+    """
+    largest = 0.0
+    for s in range(fresh.size):
+        if fresh[s]:
+            e = update.innovation[s]
+            largest = max(largest, e[0] * e[0] + e[1] * e[1] + e[2] * e[2])
+    if largest <= noise.impact_rate * noise.impact_rate:
+        return 0.0
+    return 4.0 * largest / (noise.impact_deviations * noise.impact_deviations * dt * dt * dt)
 
 
 @kernel
@@ -212,9 +227,11 @@ def step(
         predict_state(x, dt, jerk)
         for c in range(companions.x.shape[0]):
             predict_state(companions.x[c], dt, companions.jerk[c])
-        predict_covariance(P, dt, noise.jerk, body.translations, columns.complete, update.width)
     observe(samples, fresh, bias, body, sensors, options, motion, companions)
     linearise(x, samples, fresh, bias, body, sensors, options, motion, update)
+    if dt > 0.0:
+        least = impact_jerk(dt, fresh, noise, update)
+        predict_covariance(P, dt, noise.jerk, least, body.translations, columns.complete, update.width)
     update.dx[:] = 0.0
     for s in range(sensors.joint.size):
         if fresh[s]:

@@ -61,6 +61,7 @@ class Options(NamedTuple):
     accel_sees_motion: bool
     yaw_mode: int  # 0 none, 1 each segment against the world, 2 thighs against the pelvis
     yaw_bodies: Indices  # (3,) last joint of pelvis, right thigh, left thigh
+    force_bound: float  # m/s^2, longest specific force that is believed
 
 
 class Noise(NamedTuple):
@@ -69,6 +70,8 @@ class Noise(NamedTuple):
     jerk: Array  # (n,) rad^2/s^5 white jerk; translations m^2/s^5
     sample: Array  # (S, 6) rad^2/s^2 three times, m^2/s^4 three times
     yaw: float  # rad^2
+    impact_rate: float  # rad/s, innovation beyond which the jerk is widened
+    impact_deviations: float  # standard deviations that are left of such an innovation
 
 
 class Motion(NamedTuple):

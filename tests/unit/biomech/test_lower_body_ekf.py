@@ -29,6 +29,8 @@ CASES = {
     "18 dof, dynamic": (LowerBodyModel(BODY, translations=True), MeasurementModel(accel_sees_motion=True)),
 }
 ALL = np.ones(5, dtype=np.bool_)
+BLOW = np.array([6.0, -5.0, 4.0, 60.0, 90.0, -40.0])
+"""rad/s and m/s^2 that a landing adds."""
 
 
 def mounts() -> list[SensorMount]:
@@ -71,7 +73,9 @@ def test_equals_the_textbook(name: str) -> None:
     slow = TextbookEkf(model, mounts(), measurement, NoiseModel())
     jerk = np.linspace(-20, 20, n)
     jerk[:t] = 0.0
-    for sample in samples_of(model, steps, 0.02):
+    samples = samples_of(model, steps, 0.02)
+    samples[70:72, 2] += BLOW
+    for sample in samples:
         fast.advance(0.02, sample, ALL, jerk, rest_of(model))
         slow.advance(0.02, sample, jerk)
     x = slow.x.reshape(3, n)
@@ -107,6 +111,36 @@ def test_gyro_bias_is_taken_off() -> None:
         plain.advance(0.01, sample, ALL, np.zeros(15), rest_of(model))
         biased.advance(0.01, shifted, ALL, np.zeros(15), rest_of(model))
     np.testing.assert_allclose(biased.x, plain.x, atol=1e-10)
+
+
+def test_a_blow_tilts_a_gravity_sensor_no_more_than_the_bound() -> None:
+    """Ten times the force along one direction does what the bound does along it."""
+    model, measurement = CASES["15 dof, gravity"]
+    states = []
+    for length in (measurement.force_bound, 10.0 * measurement.force_bound):
+        ekf = LowerBodyEkf(model, mounts(), np.zeros((5, 3)), measurement)
+        sample = samples_of(model, 1, 0.01)[0]
+        sample[2, 3:] = length * np.array([0.6, 0.0, 0.8])
+        ekf.advance(0.01, sample, ALL, np.zeros(15), rest_of(model))
+        states.append(ekf.x.copy())
+    np.testing.assert_allclose(states[0], states[1], atol=1e-12)
+
+
+def test_velocity_follows_an_impact_at_once() -> None:
+    """A knee that starts to turn between two samples: what walking shows is smoothed, what a landing shows is not."""
+    model, measurement = CASES["15 dof, gravity"]
+    knee = model.names.index("knee_flexion_right")
+    followed = []
+    for jump in (2.0, 10.0):
+        ekf = LowerBodyEkf(model, mounts(), np.zeros((5, 3)), measurement)
+        oracle = PinocchioBody(model, mounts())
+        for k in range(101):
+            x = np.zeros((3, 15))
+            x[1, knee] = jump * (k == 100)
+            ekf.advance(0.01, np.array([oracle.sample(s, x) for s in range(5)]), ALL, np.zeros(15), rest_of(model))
+        followed.append(ekf.x[1, knee] / jump)
+    assert followed[0] < 0.8
+    assert followed[1] > 0.9
 
 
 @pytest.mark.parametrize("density", [30.0, 300.0, 3e6])

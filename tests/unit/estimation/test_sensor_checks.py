@@ -67,9 +67,9 @@ def test_more_than_a_sensor_can_measure(wild: tuple[float, float]) -> None:
 def test_a_lone_jump_is_refused_and_a_lasting_one_believed() -> None:
     subject = checks()
     fill(subject, 0, 5)
-    assert not subject.accept(0, 50 * MS, values(5, rate=20.0), 50 * MS)
+    assert not subject.accept(0, 50 * MS, values(5, rate=30.0), 50 * MS)
     assert subject.accept(0, 60 * MS, values(6), 60 * MS), "back to where it was: the jump was alone"
-    assert not subject.accept(0, 70 * MS, values(7, rate=20.0), 70 * MS)
+    assert not subject.accept(0, 70 * MS, values(7, rate=30.0), 70 * MS)
     assert subject.accept(0, 80 * MS, values(8, rate=20.5), 80 * MS)
 
 
