@@ -134,7 +134,7 @@ def record(
     for s in range(2):
         now, before = _orientation(motion, sensors, s, t), _orientation(motion, sensors, s, t - 1.0 / rate_hz)
         rate[:, s] = (before.inv() * now).as_rotvec() * rate_hz + sensors.gyro_bias[s]
-        points = [_position(motion, sensors, s, t + k * STEP_S) for k in (-1, 0, 1)]
+        points = [_position(motion, s, t + k * STEP_S) for k in (-1, 0, 1)]
         acceleration = (points[0] - 2.0 * points[1] + points[2]) / STEP_S**2
         force[:, s] = now.inv().apply(acceleration + np.array([0.0, GRAVITY, 0.0]))
     rate += sensors.rate_noise * draw.standard_normal(rate.shape)
@@ -158,7 +158,7 @@ def _orientation(motion: Motion, sensors: Sensors, s: int, t: Array) -> Rotation
     return turned * Rotation.from_matrix(sensors.R_sensor_from_segment[s].T)
 
 
-def _position(motion: Motion, sensors: Sensors, s: int, t: Array) -> Array:
+def _position(motion: Motion, s: int, t: Array) -> Array:
     hip = np.stack([motion.hip_forward(t), motion.hip_height(t), np.zeros_like(t)], axis=1)
     knee = hip + _segment(motion, 0, t).apply([0.0, -0.42, 0.0])
     return np.asarray(knee + _segment(motion, s, t).apply(SENSORS_FROM_KNEE[s]))

@@ -46,6 +46,8 @@ def tilt(normal: float, tangential: float) -> float:
 
 def wrapped(angle: float) -> float:
     """`angle` within [-pi, pi)."""
+    if -pi <= angle < pi:
+        return angle
     return (angle + pi) % (2.0 * pi) - pi
 
 
@@ -100,9 +102,9 @@ class ConventionalKnee:
 
     def step(self, sample: PlanarSample, dt_s: float) -> float:
         """The knee's angle, rad. The thigh's bias enters the knee's rate (eq. 17)."""
-        self.thigh.step(sample.thigh_rate, sample.thigh_tilt, dt_s)
-        rate = sample.shank_rate - sample.thigh_rate + self.thigh.bias
-        return self.knee.step(rate, sample.shank_tilt - sample.thigh_tilt, dt_s)
+        thigh_rate, thigh_tilt, shank_rate, shank_tilt = sample
+        self.thigh.step(thigh_rate, thigh_tilt, dt_s)
+        return self.knee.step(shank_rate - thigh_rate + self.thigh.bias, shank_tilt - thigh_tilt, dt_s)
 
 
 class SimplifiedKnee:
@@ -116,16 +118,19 @@ class SimplifiedKnee:
 
     def step(self, sample: PlanarSample, dt_s: float) -> float | None:
         """The knee's angle, rad; None while the biases are still being learned."""
+        thigh_rate, thigh_tilt, shank_rate, shank_tilt = sample
         if self._first is not None:
-            self._first.append((sample.thigh_rate, sample.shank_rate))
-            if len(self._first) >= self._wanted:
-                self.thigh_bias, self.shank_bias = constant_part(np.array(self._first)).tolist()
-                self._first = None
+            self._learn(self._first, thigh_rate, shank_rate)
             return None
-        thigh_rate = sample.thigh_rate - self.thigh_bias
-        self.thigh.step(thigh_rate, sample.thigh_tilt, dt_s)
-        knee_rate = sample.shank_rate - self.shank_bias - thigh_rate
-        return self.knee.step(knee_rate, sample.shank_tilt - sample.thigh_tilt, dt_s)
+        thigh_rate -= self.thigh_bias
+        self.thigh.step(thigh_rate, thigh_tilt, dt_s)
+        return self.knee.step(shank_rate - self.shank_bias - thigh_rate, shank_tilt - thigh_tilt, dt_s)
+
+    def _learn(self, first: list[tuple[float, float]], thigh_rate: float, shank_rate: float) -> None:
+        first.append((thigh_rate, shank_rate))
+        if len(first) >= self._wanted:
+            self.thigh_bias, self.shank_bias = constant_part(np.array(first)).tolist()
+            self._first = None
 
 
 def constant_part(signal: NDArray[np.float64]) -> NDArray[np.float64]:
