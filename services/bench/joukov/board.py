@@ -20,7 +20,18 @@ from services.bench.joukov.gait_section import (
     strides_section,
     stroke_strides,
 )
-from services.bench.joukov.marching import FIRST_SEED, PARTICIPANTS, TRIALS, Scores, Tuning, study_trial, tune
+from services.bench.joukov.marching import (
+    FIRST_SEED,
+    OURS,
+    PARTICIPANTS,
+    PLAIN,
+    TRIALS,
+    Scores,
+    Tuning,
+    study_trial,
+    trace_tuning,
+    tune,
+)
 from services.bench.joukov.marching_charts import follow_example
 from services.bench.joukov.marching_section import marching_section
 from services.bench.joukov.motions import JointMotion, motion_kinds
@@ -40,6 +51,7 @@ SEED = 60000
 MOTIONS = 100
 FEWEST_PARTICIPANTS = 2
 MOTIONS_PER_PARTICIPANT = 15
+MOST_WALKS, MOTIONS_PER_WALK = 2, 50
 HOLD_S = {"simulation": 0.0, "simulation with hold": 40.0}
 """s at 1 rad/s before the ramp: both readings of the paper."""
 NOTE = (
@@ -106,7 +118,7 @@ def curve(work: Work) -> list[Section]:
     """One joint over the process noise."""
     shapes, skipped = _shapes()
     studies: dict[str, list[Study]] = {
-        kind: work.each(kind, partial(study_seed, make=make), range(SEED, SEED + work.motions))
+        kind: work.each(kind, partial(study_kind, make=make), range(SEED, SEED + work.motions))
         for kind, make in motion_kinds(shapes).items()
     }
     section = curve_section(studies)
@@ -115,7 +127,7 @@ def curve(work: Work) -> list[Section]:
 
 def tables(work: Work) -> list[Section]:
     """Tables I to IV and segmentation: virtual participants who march, and a recorded walk."""
-    (tuning,) = work.each("tuning", _tune, [0])
+    tuning = tune(*work.each("tuning", trace_tuning, [PLAIN, OURS]))
     seeds = range(FIRST_SEED, FIRST_SEED + work.participants)
     tasks = [(seed, trial) for trial in TRIALS for seed in seeds]
     scores = work.each("marching", partial(study_trial, tuning=tuning), tasks)
@@ -137,18 +149,23 @@ def events(work: Work) -> list[Section]:
     return [events_section([row for rows in found for row in rows])]
 
 
+def walks(work: Work) -> list[Section]:
+    """The whole filter on synthetic walks."""
+    from services.bench.joukov.walks_section import study_seed, walks_section
+
+    seeds = range(max(1, min(MOST_WALKS, work.motions // MOTIONS_PER_WALK)))
+    return [walks_section(work.each("synthetic walks", study_seed, seeds))]
+
+
 PARTS: dict[str, Callable[[Work], list[Section]]] = {
     "simulation": simulation,
     "curve": curve,
     "tables": tables,
+    "walks": walks,
     "strides": strides,
     "events": events,
 }
 """Experiments by the name that `ambula bench joukov 100 tables` takes."""
-
-
-def _tune(_: int) -> Tuning:
-    return tune()
 
 
 def _follow(task: tuple[str, Tuning]) -> Any:
@@ -169,6 +186,6 @@ def _shapes() -> tuple[StrideShapes | None, list[Row]]:
         return None, [Row("knee: skipped", None, "", str(missing), None, None)]
 
 
-def study_seed(seed: int, make: Callable[[int], JointMotion]) -> Study:
+def study_kind(seed: int, make: Callable[[int], JointMotion]) -> Study:
     """All filters on the motion of a seed."""
     return study_motion(make(seed))

@@ -5,6 +5,7 @@ Sensors have noise as of skin that shivers (0.05 rad/s, 0.2 m/s^2) and soft tiss
 The first participant tunes the plain filter and is not scored.
 """
 
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -21,7 +22,7 @@ from services.bench.joukov.recordings import (
     sensors_on,
     with_noise,
 )
-from services.bench.joukov.regions import RegionErrors, prediction_errors, region_errors
+from services.bench.joukov.regions import WHOLE, RegionErrors, prediction_errors, region_errors
 from services.bench.joukov.segmentation import mean_frequency, segmentation
 from services.estimation.parameters import PUBLISHED, FilterParameters
 from services.ingest.synthetic import MarchParameters, SyntheticMarch
@@ -147,15 +148,19 @@ class Tuning:
         return {"default S": DEFAULT_S, "S*": self.star, "S*/10": self.tenth}
 
 
-def tune() -> Tuning:
-    """March the first participant at the own pace."""
+def trace_tuning(estimator: str) -> list[RegionErrors]:
+    """Errors over GRID of the participant who is not scored, at the own pace."""
     trial = Trial.of(TUNED_SEED, OWN_PACE)
-    plain = [trial.score(trial.run(Setting("gravity", PLAIN, S))).errors for S in GRID]
-    ours = [trial.score(trial.run(Setting("gravity", OURS, S))).errors for S in GRID]
-    spread = np.array([errors.sd[0, 0].mean() for errors in plain])
+    return [trial.score(trial.run(Setting("gravity", estimator, S))).errors for S in GRID.tolist()]
+
+
+def tune(plain: Sequence[RegionErrors], ours: Sequence[RegionErrors]) -> Tuning:
+    """Choose S from what `trace_tuning` found for both filters."""
+    spread = np.array([errors.sd[WHOLE, 0].mean() for errors in plain])
     first = max(int(np.argmax(spread <= 1.01 * spread.min())), DECADE)
-    agile, agile_ours = (float(GRID[np.argmin([e.rmse[0, 2].mean() for e in errors])]) for errors in (plain, ours))
-    return Tuning(float(GRID[first]), float(GRID[first - DECADE]), agile, agile_ours)
+    agile, agile_ours = (int(np.argmin([e.rmse[WHOLE, 2].mean() for e in errors])) for errors in (plain, ours))
+    star, tenth, best, best_ours = GRID[[first, first - DECADE, agile, agile_ours]].tolist()
+    return Tuning(star, tenth, best, best_ours)
 
 
 def settings(trial: str, tuning: Tuning) -> list[Setting]:

@@ -18,10 +18,22 @@ from services.bench.joukov.marching import (
     Trial,
     Tuning,
     settings,
+    tune,
 )
 from services.bench.joukov.marching_tables import best_ratio, largest_S, mean_ratio
 from services.bench.joukov.published_tables import error_table, is_smaller, prediction_table
-from services.bench.joukov.regions import BOTTOM, QUARTER, REST, TOP, WHOLE, prediction_errors, region_errors, regions
+from services.bench.joukov.regions import (
+    BOTTOM,
+    QUARTER,
+    REGIONS,
+    REST,
+    TOP,
+    WHOLE,
+    RegionErrors,
+    prediction_errors,
+    region_errors,
+    regions,
+)
 from services.bench.joukov.segmentation import (
     TURN,
     boundaries,
@@ -165,3 +177,20 @@ def test_what_is_run_covers_every_table():
             assert {Setting(model, estimator, S_named) for model in MODELS} <= set(own)
     assert Setting("gravity", OURS, tuning.agile_ours) in own
     assert {setting.estimator for setting in settings(BEAT, tuning)} == {LITERAL, OURS}
+
+
+def test_S_is_tuned_for_the_plain_filter():
+    def errors(spread, acceleration):
+        shape = (len(REGIONS), 3, 2)
+        return [
+            RegionErrors(np.full(shape, acceleration[k]), np.full(shape, spread[k])) for k in range(len(acceleration))
+        ]
+
+    plain = errors([3.0, 2.0, 1.5, 1.05, 1.0, 1.005, 1.0, 1.0, 1.0], [9.0, 8.0, 7.0, 6.0, 5.0, 4.0, 3.0, 2.0, 5.0])
+    ours = errors([1.0] * 9, [9.0, 8.0, 7.0, 6.0, 1.0, 4.0, 3.0, 2.0, 5.0])
+    tuning = tune(plain, ours)
+    assert (tuning.star, tuning.tenth) == (1e4, 1e3)
+    assert tuning.agile == pytest.approx(10**5.5)
+    assert tuning.agile_ours == 1e4
+    # S*/10 is to be on the curve as well.
+    assert tune(ours, ours).star == 1e3
