@@ -193,19 +193,27 @@ class AxisSearch:
     def is_clear(self, axes: dict[int, FlexionAxis], before: dict[int, FlexionAxis]) -> bool:
         """Every leg sensor has moved enough, swung, and kept its axis since the look before.
 
+        Where the walk has to tell the sign of a shank's or a thigh's axis it takes longer. A foot rests half of the
+        time and turns far the rest of it, so less of it will do.
+
         A sensor on the lower back alone has no axis to wait for.
         """
         limits = self.parameters
         if self.needs_no_axis:
             return True
         return bool(axes) and all(
-            axis.moving_s >= limits.shortest_moving_s * (1.0 if axis.sign_is_placed else 2.0)
+            axis.moving_s >= self._least_moving_s(s, axis)
             and axis.fastest >= limits.swing_rate
             and axis.ratio <= limits.clearest_ratio
             and s in before
             and angle_between(axis.right, before[s].right) <= limits.steadiest_change
             for s, axis in axes.items()
         )
+
+    def _least_moving_s(self, s: int, axis: FlexionAxis) -> float:
+        if self.sensors[s].segment in (Segment.FOOT_LEFT, Segment.FOOT_RIGHT):
+            return 0.5 * self.parameters.shortest_moving_s
+        return self.parameters.shortest_moving_s * (1.0 if axis.sign_is_placed else 2.0)
 
     def is_moving(self, axes: dict[int, FlexionAxis]) -> bool:
         """Some leg sensor has moved enough to tell an axis; the lower back alone needs none."""

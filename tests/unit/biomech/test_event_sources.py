@@ -1,0 +1,35 @@
+import pytest
+
+from schemas.vocabulary import EventSource, Segment, Side
+from services.biomech.event_sources import event_source, event_sources, lone_segments
+
+LEFT_LEG = {Segment.THIGH_LEFT, Segment.SHANK_LEFT}
+FEET = {Segment.FOOT_LEFT, Segment.FOOT_RIGHT}
+
+
+@pytest.mark.parametrize(
+    ("worn", "source"),
+    [
+        ({Segment.PELVIS, *LEFT_LEG, *FEET}, EventSource.FULL_LEG),
+        ({*LEFT_LEG, *FEET}, EventSource.SHANK),
+        ({Segment.PELVIS, Segment.SHANK_LEFT, *FEET}, EventSource.SHANK),
+        ({Segment.PELVIS, Segment.THIGH_LEFT, *FEET}, EventSource.FOOT),
+        ({Segment.PELVIS, Segment.THIGH_LEFT}, EventSource.LOWER_BACK),
+        ({Segment.PELVIS, Segment.FOOT_RIGHT}, EventSource.LOWER_BACK),
+        ({Segment.THIGH_LEFT, Segment.FOOT_RIGHT, Segment.TORSO}, EventSource.NOTHING),
+        (set(), EventSource.NOTHING),
+    ],
+)
+def test_the_best_that_is_worn_tells_a_leg(worn, source):
+    assert event_source(worn, Side.LEFT) is source
+
+
+def test_each_leg_has_its_own_source():
+    sources = event_sources({Segment.PELVIS, *LEFT_LEG, Segment.FOOT_RIGHT})
+    assert sources == {Side.LEFT: EventSource.FULL_LEG, Side.RIGHT: EventSource.FOOT}
+
+
+def test_only_what_tells_events_alone_is_followed_alone():
+    assert lone_segments({Segment.PELVIS, *LEFT_LEG, *FEET}) == (Segment.FOOT_RIGHT,)
+    assert lone_segments({Segment.PELVIS, Segment.SHANK_LEFT}) == (Segment.PELVIS,)
+    assert lone_segments({Segment.SHANK_LEFT, Segment.SHANK_RIGHT, *FEET}) == ()
