@@ -68,13 +68,31 @@ def events(json_path: Path | None = None, *subject: str) -> Scoreboard:
     return run(json_path, *subject)
 
 
+def walks(json_path: Path | None = None, walks: str = "2") -> Scoreboard:
+    """The whole filter on synthetic walks: over the process noise, where the stride breaks off, and its deviations."""
+    from services.bench.joukov.walks import run
+
+    if not walks.isdecimal():
+        raise ValueError(f"walks takes a number of walks, e.g. 2, not {walks!r}")
+    return run(json_path, int(walks))
+
+
+def knee(json_path: Path | None = None, *subject: str, report: Path | None = None) -> Scoreboard:
+    """The two-sensor knee: axis, angle and cost against optical truth, published methods and libraries."""
+    from services.bench.knee.board import run
+
+    return run(json_path, *subject, report=report)
+
+
 SCOREBOARDS: dict[str, Callable[..., Scoreboard]] = {
     "accuracy": accuracy,
     "chain": chain,
     "events": events,
     "joukov": joukov,
+    "knee": knee,
     "recovery": recovery,
     "rhythm": rhythm,
     "step": step,
     "strides": strides,
+    "walks": walks,
 }

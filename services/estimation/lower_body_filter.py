@@ -14,7 +14,7 @@ from services.biomech.lower_body_ekf import LowerBodyEkf
 from services.biomech.rhythm.reading import RhythmEstimator, RhythmReading
 from services.biomech.rhythm.trusted import TrustedRhythm
 from services.estimation.alignment import Alignment
-from services.estimation.parameters import FilterParameters
+from services.estimation.parameters import FilterParameters, UnmodelledErrors
 from services.estimation.samples import Tick
 from services.flow.node import State, pack_array, unpack_array
 
@@ -81,6 +81,7 @@ class LowerBodyFilter:
         self._starts_moving = calibrated.from_walking
         self._may_diverge = parameters.measurement.gyro_sees_position or parameters.measurement.accel_sees_motion
         self._ahead = _ahead(parameters.sample_delay / rate_hz)
+        self._unmodelled = _unmodelled(self.model, parameters.unmodelled)
         self._last_ns: int | None = None
         self._heard_ns: list[int] = []
         self.unseen: frozenset[Segment] = frozenset(SEGMENTS)
@@ -199,7 +200,8 @@ class LowerBodyFilter:
         return reading
 
     def _row(self, captured_ns: int, reading: RhythmReading) -> Row:
-        values = np.concatenate([self._ahead @ self.ekf.estimate, self.ekf.deviations()])
+        deviations = np.hypot(self.ekf.deviations(), self._unmodelled)
+        values = np.concatenate([self._ahead @ self.ekf.estimate, deviations])
         if len(self.model.soft) == 0 or self.model.first_rotation > 0:
             pick = self.model.reported
             values = np.where(pick >= 0, values[:, pick], 0.0)
@@ -243,6 +245,21 @@ class LowerBodyFilter:
 def _ahead(delay_s: float) -> Array:
     """(3, 3) that carries position, velocity and acceleration on by the delay of the samples."""
     return np.array([[1.0, delay_s, 0.5 * delay_s**2], [0.0, 1.0, delay_s], [0.0, 0.0, 1.0]])
+
+
+def _unmodelled(model: LowerBodyModel, errors: UnmodelledErrors) -> Array:
+    """(2, n) rad and rad/s that no covariance knows of, of every degree of freedom of the model."""
+    tissue = {"pelvis": errors.soft_tissue_pelvis, "thigh": errors.soft_tissue_thigh, "shank": errors.soft_tissue_shank}
+    gravity = {"pelvis": 0.0, "thigh": errors.gravity_thigh, "shank": errors.gravity_shank}
+    result = np.zeros((2, len(model.dofs)))
+    for segment in SEGMENTS:
+        kinds = {part.partition("_")[0] for part in (segment, PARENT_SEGMENT.get(segment, segment))}
+        moved = sum(tissue[kind] ** 2 for kind in kinds)
+        result[:, model.joints_of(segment)] = [
+            [np.sqrt(moved + sum(gravity[kind] ** 2 for kind in kinds))],
+            [errors.soft_tissue_rate * np.sqrt(moved)],
+        ]
+    return result
 
 
 def _mount(sensor: SensorDescription, R_segment_from_sensor: Array) -> SensorMount:
