@@ -5,6 +5,7 @@ from collections.abc import Iterable
 from dataclasses import replace
 
 import numpy as np
+from numpy.typing import NDArray
 
 from schemas.health import Rejection
 from schemas.kinematics import JointState
@@ -20,6 +21,7 @@ from services.estimation.learning import RhythmLearning, start_rhythm
 from services.estimation.live_pose import estimated_pose, sensor_statuses, unused_statuses, waiting_pose
 from services.estimation.lower_body_filter import Calibrated, LowerBodyFilter, Row
 from services.estimation.parameters import EstimationParameters
+from services.estimation.resting_bias import RestingBias
 from services.estimation.samples import Tick, TickBatch
 from services.estimation.segment_motion import LoneSegments
 from services.flow.message import Message, Output, Stream
@@ -45,6 +47,7 @@ class EstimationNode:
         self._calibrated: Calibrated | None = None
         self._filter: LowerBodyFilter | None = None
         self._lone: LoneSegments | None = None
+        self._bias: RestingBias | None = None
         self._learning = RhythmLearning()
         self._next_live_ns = 0
 
@@ -98,6 +101,7 @@ class EstimationNode:
         """Publish the calibration and catch up with the walk."""
         self._calibrated = calibrated
         self._filter, self._lone = self._new_filter(calibrated), self._new_lone(calibrated)
+        self._bias = self._new_bias(calibrated)
         start_rhythm(self._filter.rhythm, self._description.known_rhythms)
         kept = self._calibrator.batches
         message = calibration_message(self._description, self._intake, calibrated)
@@ -113,6 +117,12 @@ class EstimationNode:
             calibrated, alignment=calibrated.alignment.first(count), gyro_bias=calibrated.gyro_bias[:count]
         )
         return LowerBodyFilter(self._description, self._intake.sensors[:count], of_body, parameters)
+
+    def _new_bias(self, calibrated: Calibrated) -> RestingBias | None:
+        parameters = self._parameters
+        if not parameters.follow_bias:
+            return None
+        return RestingBias(calibrated.gyro_bias.copy(), parameters.standing, parameters.bias)
 
     def _new_lone(self, calibrated: Calibrated) -> LoneSegments | None:
         segments = lone_segments(worn_segments(self._description.hubs))
@@ -136,6 +146,8 @@ class EstimationNode:
         observed: list[Segment] = []
         learned: list[Output] = []
         for tick in ticks:
+            if self._bias is not None and self._bias.add(tick):
+                self._believe(running, self._bias.bias)
             row = running.fuse(tick.first(self._intake.body_sensors))
             if rows and (running.valid != valid or running.observed != observed):
                 outputs += _estimates(rows, valid, observed, self._lone)
@@ -149,6 +161,11 @@ class EstimationNode:
             return []
         outputs += _estimates(rows, valid, observed, self._lone) + learned
         return outputs + self._picture(running, rows[-1])
+
+    def _believe(self, running: LowerBodyFilter, gyro_bias: NDArray[np.float64]) -> None:
+        running.ekf.bias[:] = gyro_bias[: self._intake.body_sensors]
+        if self._lone is not None:
+            self._lone.believe(gyro_bias)
 
     def _picture(self, running: LowerBodyFilter, row: Row) -> list[Output]:
         """The picture of the newest row, when its time has come. None while catching up: nobody could watch it."""
@@ -178,6 +195,7 @@ class EstimationNode:
             "calibrated": None if self._calibrated is None else pack_calibrated(self._calibrated),
             "filter": None if self._filter is None else self._filter.snapshot(),
             "lone": None if self._lone is None else self._lone.snapshot(),
+            "bias": None if self._bias is None else self._bias.snapshot(),
             "learning": self._learning.snapshot(),
             "next_live_ns": self._next_live_ns,
         }
@@ -186,7 +204,7 @@ class EstimationNode:
         """Inverse of `snapshot`, for a node built from the same description and parameters."""
         self._intake.restore(state["intake"])
         self._calibrator.restore(state["calibrator"])
-        self._calibrated, self._filter, self._lone = None, None, None
+        self._calibrated, self._filter, self._lone, self._bias = None, None, None, None
         if state["calibrated"] is not None:
             self._calibrated = unpack_calibrated(state["calibrated"])
             self._filter = self._new_filter(self._calibrated)
@@ -194,6 +212,10 @@ class EstimationNode:
             self._lone = self._new_lone(self._calibrated)
             if self._lone is not None:
                 self._lone.restore(state["lone"])
+            self._bias = self._new_bias(self._calibrated)
+            if self._bias is not None:
+                self._bias.restore(state["bias"])
+                self._believe(self._filter, self._bias.bias)
         self._learning.restore(state["learning"])
         self._next_live_ns = state["next_live_ns"]
 

@@ -41,6 +41,16 @@ class StandingParameters:
 
 
 @dataclass(frozen=True)
+class BiasParameters:
+    """How gyroscope biases are followed from pause to pause. Set by these definitions, not tuned."""
+
+    start_std: float = 0.005  # rad/s, what a standing of 2 to 3 s leaves unknown
+    drift: float = 0.00035  # rad/s within one second's random walk: 0.5 deg/s in 10 min, a sensor that warms up
+    farthest: float = 3.0  # standard deviations; a body that turns faster than that in a pause turns slowly, it does
+    # not tell a bias
+
+
+@dataclass(frozen=True)
 class AlignmentParameters:
     """How the flexion axes are found in the first steps."""
 
@@ -152,6 +162,8 @@ class EstimationParameters:
     alignment: AlignmentParameters = field(default_factory=AlignmentParameters)
     walking: WalkingParameters = field(default_factory=WalkingParameters)
     filter: FilterParameters = field(default_factory=FilterParameters)
+    bias: BiasParameters = field(default_factory=BiasParameters)
+    follow_bias: bool = True  # in pauses, see resting_bias.py; without it the first standing's biases stay
     segment_motion: SegmentMotionParameters = field(default_factory=SegmentMotionParameters)
     lateness_s: float = 0.04  # s of captured time that one hub may lag behind another before it is not waited for
     same_tick_s: float = 0.0005  # s, samples closer than this are fused at the time of the earliest

@@ -101,6 +101,10 @@ class LoneSegments:
         self._verticals = {s: Vertical(parameters) for s in wanted if sensors[s].segment is not Segment.PELVIS}
         self._rows: dict[int, list[tuple[int, Vector, Vector]]] = {s: [] for s in wanted}
 
+    def believe(self, gyro_bias: Array) -> None:
+        """From now on these are the biases (S, 3) of all sensors, rad/s."""
+        self._bias = {s: gyro_bias[s] for s in self._bias}
+
     def take(self, tick: Tick, tilt: float, obliquity: float) -> None:
         """Take the fresh samples of a tick, with the pelvis angles (rad) at that time."""
         for s, rows in self._rows.items():

@@ -47,6 +47,13 @@ class Sums:
         """Nothing yet."""
         return cls(np.zeros(sensors), np.zeros((sensors, 6)), np.zeros((sensors, 6)))
 
+    @classmethod
+    def of(cls, ticks: Sequence[Tick]) -> "Sums":
+        """Of one tick or more."""
+        samples, fresh = np.array([tick.samples for tick in ticks]), np.array([tick.fresh for tick in ticks])
+        heard = np.where(fresh[:, :, None], samples, 0.0)
+        return cls(fresh.sum(axis=0).astype(np.float64), heard.sum(axis=0), (heard**2).sum(axis=0))
+
     def add_tick(self, tick: Tick) -> None:
         """Add the fresh samples of a tick."""
         self.count += tick.fresh
@@ -77,6 +84,14 @@ class Sums:
         """Inverse of `pack`."""
         table = unpack_array(state)
         return cls(table[:, 0].copy(), table[:, 1:7].copy(), table[:, 7:13].copy())
+
+
+def is_still(block: Sums, limits: StandingParameters) -> bool:
+    """Whether every sensor that spoke in a block was at rest; not where none did."""
+    seen = block.count > 0
+    rate = np.linalg.norm(block.mean()[:, RATE], axis=1)[seen]
+    spread = np.linalg.norm(block.std()[:, FORCE], axis=1)[seen]
+    return bool(seen.any() and (rate < limits.still_rate).all() and (spread < limits.still_force_std).all())
 
 
 @dataclass
@@ -120,7 +135,7 @@ class StandingDetector:
 
     def _close_block(self, now_ns: int) -> None:
         assert self._block_start_ns is not None
-        self.is_still = self._block_is_still()
+        self.is_still = is_still(self._block, self.parameters)
         if not self.is_still:
             self._span_start_ns = None
             self._span, self._held = Sums.zero(len(self.sensors)), Sums.zero(len(self.sensors))
@@ -131,13 +146,6 @@ class StandingDetector:
             self._held, self._held_until_ns = self._block, self._block_start_ns
             self._offer()
         self._block, self._block_start_ns = Sums.zero(len(self.sensors)), now_ns
-
-    def _block_is_still(self) -> bool:
-        seen = self._block.count > 0
-        rate = np.linalg.norm(self._block.mean()[:, RATE], axis=1)[seen]
-        spread = np.linalg.norm(self._block.std()[:, FORCE], axis=1)[seen]
-        limits = self.parameters
-        return bool(seen.any() and (rate < limits.still_rate).all() and (spread < limits.still_force_std).all())
 
     def _offer(self) -> None:
         assert self._span_start_ns is not None

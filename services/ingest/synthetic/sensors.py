@@ -20,13 +20,18 @@ SHANK_WOBBLE_SHARE = 0.4
 """Soft tissue moves less over the shin than over the thigh."""
 
 
+DRIFT_TIME_S = 600.0
+"""Over which the drift of a bias is stated."""
+
+
 @dataclass(frozen=True)
 class Mount:
     """One sensor: where it sits and how it is turned. Axes of the case: x up the limb, z out of the skin."""
 
     description: SensorDescription
     R_segment_from_sensor: NDArray[np.float64]
-    gyro_bias: NDArray[np.float64]
+    gyro_bias: NDArray[np.float64]  # rad/s at time 0
+    gyro_drift: NDArray[np.float64]  # rad/s^2
     accel_bias: NDArray[np.float64]
     wobble_axis: NDArray[np.float64]  # unit vector, segment frame
     wobble: float  # rad
@@ -64,6 +69,7 @@ def _mount(
 ) -> Mount:
     rng = np.random.default_rng([parameters.seed, 2, index])
     twist = Rotation.from_rotvec(_direction(rng) * rng.uniform(0.0, parameters.mounting)).as_matrix()
+    warming = np.random.default_rng([parameters.seed, 4, index])
     share = {"thigh": 1.0, "shank": SHANK_WOBBLE_SHARE}.get(name.partition("_")[0], 0.0)
     return Mount(
         SensorDescription(
@@ -76,6 +82,7 @@ def _mount(
         ),
         twist @ _nominal(np.array(outward)),
         rng.normal(0.0, parameters.gyro_bias, 3),
+        warming.normal(0.0, parameters.gyro_drift / DRIFT_TIME_S, 3),
         rng.normal(0.0, parameters.accel_bias, 3),
         _direction(rng),
         share * parameters.soft_tissue,

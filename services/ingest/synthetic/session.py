@@ -119,7 +119,8 @@ class SyntheticSession(ABC):
         truth = measure(mount, body.segments[mount.description.segment], strides.phase, strides.amplitude)
         rng = np.random.default_rng([self.parameters.seed, 3, self.mounts.index(mount), block])
         rate, force = spoiled(mount, truth, self.parameters, rng)
-        return ImuTrack(captured_ns, rate[:-1], force[:-1])
+        drifted = (captured_ns / 1e9)[:, None] * mount.gyro_drift
+        return ImuTrack(captured_ns, rate[:-1] + drifted, force[:-1])
 
     def _truth(self, body: WalkingBody, strides: Strides, start: Array) -> Array:
         walking = strides.phase.rate
