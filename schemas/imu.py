@@ -19,10 +19,19 @@ class SensorSamples(Payload):
         return self
 
 
+class StandingMark(Payload):
+    """The operator says, while the session runs, that the person stood still. It counts from `given_ns` on."""
+
+    from_ns: SessionTime
+    to_ns: SessionTime
+    given_ns: SessionTime = Field(description="ns: newest sample of the session when the mark came; later ones know it")
+
+
 class ImuBatch(Payload):
     """Samples of all sensors of one hub, in the order of the hub's sensors in the session description."""
 
     sensors: list[SensorSamples]
+    marks: list[StandingMark] = Field(description="given since the message before, by any hub; nearly always none")
 
 
 class ReferenceBatch(Payload):

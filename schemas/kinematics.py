@@ -89,6 +89,7 @@ class LivePose(Payload):
     captured_ns: SessionTime
     phase: str = Field(description="waiting, calibrating or estimating")
     message: str = Field(description="what the therapist should do or know; empty when all is well")
+    notice: str = Field(description="what became of her last mark, for some seconds; else empty")
     segments: list[SegmentPose]
     angles: dict[str, float] = Field(description="rad, by degree of freedom; only valid ones")
     angles_std: dict[str, float] = Field(description="rad, by degree of freedom; only valid ones")

@@ -112,6 +112,21 @@ def replay(
 
 
 @app.command()
+def mark(
+    session: Annotated[str, typer.Argument(help="id of a running session, as `ambula replay` and the page show it")],
+    last: Annotated[float, typer.Option(help="s of standing that lie behind, 1 to 10")] = 3.0,
+) -> None:
+    """Mark the last seconds of a running session as standing; the live page says whether they were."""
+    from services.bus.connection import Bus, BusUnavailable
+    from services.bus.settings import BusSettings
+    from services.cli import live
+
+    with told(BusUnavailable, live.NotStarted), Bus.open(BusSettings(), "mark") as bus:
+        from_s, to_s = live.mark_standing(bus, session, last)
+    out.print(f"marked as standing: {from_s:.1f} to {to_s:.1f} s")
+
+
+@app.command()
 def run(
     path: Source,
     folder: Annotated[Path, typer.Option("--out", help="folder for the results; made when it is missing")],

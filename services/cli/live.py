@@ -20,7 +20,7 @@ SILENCE_S = 60.0
 
 
 class NotStarted(RuntimeError):
-    """Ingest refused a session, or no ingest answers."""
+    """Ingest refused an order, or no ingest answers."""
 
 
 class WentSilent(RuntimeError):
@@ -55,6 +55,21 @@ def start_session(
     if "error" in answer:
         raise NotStarted(answer["error"])
     return SessionDescription.model_validate(answer)
+
+
+def mark_standing(bus: Bus, session: str, last_s: float) -> tuple[float, float]:
+    """Mark the last seconds of a running session as standing; the span in s of session time.
+
+    Raises NotStarted with the reason that ingest gave, or with what to do when no ingest answers.
+    """
+    order = {"session": session, "last_s": last_s}
+    replies = bus.ask(command_key(bus.settings.site, "ingest", "mark"), body=json.dumps(order).encode(), timeout_s=5)
+    if not replies:
+        raise NotStarted("no ingest answers; start the services with `ambula up` first")
+    answer: dict[str, Any] = json.loads(replies[0].payload)
+    if "error" in answer:
+        raise NotStarted(answer["error"])
+    return float(answer["from_s"]), float(answer["to_s"])
 
 
 class Watch:

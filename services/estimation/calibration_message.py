@@ -44,4 +44,5 @@ def calibration_message(description: SessionDescription, intake: Intake, calibra
 def _method(description: SessionDescription, calibrated: Calibrated) -> str:
     if calibrated.from_walking:
         return "walking alone"
-    return "standing, marked by the operator + walking" if description.standing else "standing+walking"
+    is_marked = calibrated.marked or bool(description.standing)
+    return "standing, marked by the operator + walking" if is_marked else "standing+walking"

@@ -14,11 +14,13 @@ from services.estimation.lower_body_filter import Calibrated
 from services.estimation.parameters import EstimationParameters
 from services.estimation.samples import TickBatch, pack_batches, unpack_batches
 from services.estimation.sensor_checks import SensorChecks
+from services.estimation.sitting import rose_from_sitting
 from services.estimation.standing import StandingDetector, StandingReference, pack_reference, unpack_reference
 from services.estimation.walking_reference import lean, refer_to_walking
 from services.flow.node import State, pack_array, unpack_array
 
 Array = NDArray[np.float64]
+STAND = "Stand still, upright"
 
 
 class Calibrator:
@@ -58,7 +60,7 @@ class Calibrator:
     def message(self) -> str:
         """What the therapist should do now."""
         if self.reference is None:
-            return "Please stand up straight" if self.standing.is_sitting else "Stand still, upright"
+            return "Sitting, not standing: please stand up straight" if self.standing.is_sitting else STAND
         wrong = [self.sensors[s].name for s in np.flatnonzero(self.refused)]
         if wrong:
             forces = np.linalg.norm(self.reference.mean_force[self.refused], axis=1)
@@ -85,6 +87,20 @@ class Calibrator:
             return None
         self._looked_ns = batch.captured_ns
         return self._look(reference)
+
+    def take_mark(self, reference: StandingReference) -> None:
+        """The operator has marked a standing before the calibration: the first steps are looked for from here on."""
+        self.standing.decide(reference)
+        self._begun, self._axes = None, {}
+        self._keep_from(reference.until_ns - round(self.parameters.before_walking_s * 1e9))
+
+    def realign(self, reference: StandingReference) -> Calibrated | None:
+        """The calibration with another standing, after the first: new verticals and biases, the same flexion axes."""
+        calibrated = self._calibrated(reference, AxisSearch(self.sensors, reference, self.parameters.alignment))
+        if calibrated is not None:
+            self.standing.decide(reference)
+            self._begun = reference
+        return calibrated
 
     def _nobody_stood(self) -> bool:
         return self.standing.reference is None and not self.standing.marked and not self.standing.is_still
@@ -115,6 +131,7 @@ class Calibrator:
         self.batches = [
             batch for batch in self.batches if batch.ticks and batch.ticks[-1].captured_ns >= walked.from_ns
         ]
+        self._axes = axes
         return Calibrated(alignment, walked.reference.gyro_bias, from_walking=True)
 
     def _moving_since(self, newest: StandingReference | None) -> StandingReference | None:
@@ -164,6 +181,12 @@ class Calibrator:
         if not ticks:
             return None
         axes = search.axes(np.array([tick.samples for tick in ticks]), np.array([tick.fresh for tick in ticks]))
+        if not self.standing.marked and rose_from_sitting(
+            reference, axes, self.sensors, ticks, self.parameters.standing
+        ):
+            self.standing.withdraw()
+            self._begun, self._axes = None, {}
+            return None
         clear = search.is_clear(axes, self._axes)
         self._axes = axes
         kept_s = (self.batches[-1].captured_ns - self.batches[0].captured_ns) / 1e9
@@ -174,7 +197,9 @@ class Calibrator:
 
     def _calibrated(self, reference: StandingReference, search: AxisSearch) -> Calibrated | None:
         alignment = search.align(self._axes)
-        return Calibrated(alignment, reference.gyro_bias) if alignment.aligned.any() else None
+        if not alignment.aligned.any():
+            return None
+        return Calibrated(alignment, reference.gyro_bias, marked=reference.marked)
 
     def snapshot(self) -> State:
         """Standing, kept batches and the axes of the last look."""
@@ -214,6 +239,7 @@ def pack_calibrated(calibrated: Calibrated) -> State:
         "aligned": [bool(flag) for flag in alignment.aligned],
         "gyro_bias": pack_array(calibrated.gyro_bias),
         "from_walking": calibrated.from_walking,
+        "marked": calibrated.marked,
     }
 
 
@@ -221,4 +247,4 @@ def unpack_calibrated(state: State) -> Calibrated:
     """Inverse of `pack_calibrated`."""
     aligned = np.array(state["aligned"], dtype=np.bool_)
     alignment = Alignment(unpack_array(state["frames"]), unpack_array(state["quality"]), aligned)
-    return Calibrated(alignment, unpack_array(state["gyro_bias"]), state["from_walking"])
+    return Calibrated(alignment, unpack_array(state["gyro_bias"]), state["from_walking"], state["marked"])

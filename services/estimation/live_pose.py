@@ -72,12 +72,13 @@ def sensor_troubles(statuses: Sequence[SensorStatus]) -> str:
     return "Sensor " + ", ".join(parts) if parts else ""
 
 
-def waiting_pose(captured_ns: int, phase: str, message: str, statuses: list[SensorStatus]) -> LivePose:
+def waiting_pose(captured_ns: int, phase: str, message: str, notice: str, statuses: list[SensorStatus]) -> LivePose:
     """The picture before there is an estimate."""
     return LivePose(
         captured_ns=captured_ns,
         phase=phase,
         message=message,
+        notice=notice,
         segments=[],
         angles={},
         angles_std={},
@@ -88,7 +89,7 @@ def waiting_pose(captured_ns: int, phase: str, message: str, statuses: list[Sens
 
 def estimated_pose(
     row: Row, model: LowerBodyModel, position: Array, valid: list[bool], unseen: frozenset[Segment],
-    statuses: list[SensorStatus],
+    notice: str, statuses: list[SensorStatus],
 ) -> LivePose:  # fmt: skip
     """The picture of one row; position (n,) in the model's order."""
     seen = [(i, dof.name) for i, dof in enumerate(LOWER_BODY) if valid[i]]
@@ -96,6 +97,7 @@ def estimated_pose(
         captured_ns=row.captured_ns,
         phase="estimating",
         message=sensor_troubles(statuses),
+        notice=notice,
         segments=segment_pictures(model, position, unseen),
         angles={name: row.position[i] for i, name in seen},
         angles_std={name: row.position_std[i] for i, name in seen},

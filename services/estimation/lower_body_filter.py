@@ -43,6 +43,7 @@ class Calibrated:
     alignment: Alignment
     gyro_bias: Array  # (S, 3) rad/s
     from_walking: bool = False  # nobody stood: the filter starts in motion, and zero is a population's
+    marked: bool = False  # the operator marked the standing while the session ran
 
 
 class LowerBodyFilter:
@@ -93,6 +94,14 @@ class LowerBodyFilter:
         self.observed = self._observed_without(self._missing)
         """Segments whose own sensor speaks and is not in doubt."""
         self._rest = self._rest_without(self.unseen)
+
+    def continue_from(self, before: "LowerBodyFilter") -> None:
+        """Take the place of a filter with another zero: the rhythm goes on, joints are in doubt as after a gap."""
+        self._rhythm.restore(before._rhythm.snapshot())
+        if self._driver is not None and before._driver is not None:
+            self._driver.restore(before._driver.snapshot())
+        self._heard_ns = list(before._heard_ns)
+        self._starts_moving = True
 
     def _listen(self, tick: Tick) -> frozenset[Segment]:
         """Note who speaks; the segments that nobody speaks for. Everyone is given the start's benefit of the doubt."""

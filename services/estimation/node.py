@@ -1,13 +1,14 @@
 """Samples of the worn sensors become joint states with their rhythm, a calibration and a picture for the screen."""
 
 from collections import deque
-from collections.abc import Iterable
+from collections.abc import Iterable, Sequence
 from dataclasses import replace
 
 import numpy as np
 from numpy.typing import NDArray
 
 from schemas.health import Rejection
+from schemas.imu import StandingMark
 from schemas.kinematics import JointState
 from schemas.rhythm import LearnedRhythm, Rhythm
 from schemas.session import SessionDescription
@@ -20,10 +21,12 @@ from services.estimation.intake import Intake
 from services.estimation.learning import RhythmLearning, start_rhythm
 from services.estimation.live_pose import estimated_pose, sensor_statuses, unused_statuses, waiting_pose
 from services.estimation.lower_body_filter import Calibrated, LowerBodyFilter, Row
+from services.estimation.marked_standing import Marks
 from services.estimation.parameters import EstimationParameters
 from services.estimation.resting_bias import RestingBias
 from services.estimation.samples import Tick, TickBatch
 from services.estimation.segment_motion import LoneSegments
+from services.estimation.standing import StandingReference
 from services.flow.message import Message, Output, Stream
 from services.flow.node import Node, State
 
@@ -49,6 +52,7 @@ class EstimationNode:
         self._lone: LoneSegments | None = None
         self._bias: RestingBias | None = None
         self._learning = RhythmLearning()
+        self._marks = Marks(self._intake.sensors, self._parameters.standing, self._parameters.notice_s)
         self._next_live_ns = 0
 
     @property
@@ -58,6 +62,7 @@ class EstimationNode:
 
     def step(self, message: Message) -> list[Output]:
         """Take one imu message."""
+        self._marks.note(message.payload)
         return [output for batch in self._intake.accept(message) for output in self._take(batch)]
 
     def finish(self) -> list[Output]:
@@ -74,17 +79,48 @@ class EstimationNode:
         return self._intake.checks.rejections()
 
     def _take(self, batch: TickBatch) -> list[Output]:
+        outputs: list[Output] = []
+        for marks, ticks in self._marks.runs(batch.ticks):
+            for mark in marks:
+                outputs += self._hear(mark, ticks[0].captured_ns)
+            self._marks.watch(ticks)
+            outputs += self._follow(ticks)
+        return self._wait(batch) if self._filter is None else outputs
+
+    def _follow(self, run: Sequence[Tick]) -> list[Output]:
         """Until the calibration each tick is looked at by itself: how samples were batched must decide nothing."""
         outputs: list[Output] = []
-        ticks = deque(batch.ticks)
+        ticks = deque(run)
         while ticks and self._filter is None:
             tick = ticks.popleft()
             calibrated = self._calibrator.add(TickBatch(tick.captured_ns, (tick,)), self._intake.checks)
             if calibrated is not None:
                 outputs += self._start(calibrated)
+        return outputs if self._filter is None else outputs + self._estimate(self._filter, ticks)
+
+    def _hear(self, mark: StandingMark, now_ns: int) -> list[Output]:
+        """The operator marked a standing: before the calibration it is the one that counts, later a new zero."""
+        alignment = None if self._calibrated is None else self._calibrated.alignment
+        standing = self._marks.judge(mark, alignment, now_ns)
+        if standing is None:
+            return []
         if self._filter is None:
-            return self._wait(batch)
-        return outputs + self._estimate(self._filter, ticks)
+            self._marks.say("Standing taken as marked", now_ns)
+            self._calibrator.take_mark(standing)
+            return []
+        return self._refer_anew(standing, self._filter, now_ns)
+
+    def _refer_anew(self, standing: StandingReference, before: LowerBodyFilter, now_ns: int) -> list[Output]:
+        """All angles from now on refer to this standing, and the body starts from it, facing ahead."""
+        calibrated = self._calibrator.realign(standing)
+        if calibrated is None:
+            self._marks.refuse("no sensor could be aligned", now_ns)
+            return []
+        self._marks.say("Angles refer to the marked standing from now on", now_ns)
+        self._calibrated = calibrated
+        self._filter, self._lone = self._new_filter(calibrated), self._new_lone(calibrated)
+        self._filter.continue_from(before)
+        return [Output(CALIBRATION, now_ns, calibration_message(self._description, self._intake, calibrated))]
 
     def _wait(self, batch: TickBatch) -> list[Output]:
         if not self._is_live_due(batch.captured_ns):
@@ -94,7 +130,9 @@ class EstimationNode:
         statuses = sensor_statuses(
             self._intake.sensors, self._intake.checks, batch.captured_ns, self._calibrator.refused, everyone
         ) + unused_statuses(self._intake.unused)
-        pose = waiting_pose(batch.captured_ns, phase, self._calibrator.message(), statuses)
+        pose = waiting_pose(
+            batch.captured_ns, phase, self._calibrator.message(), self._marks.notice_at(batch.captured_ns), statuses
+        )
         return [Output(LIVE_POSE, batch.captured_ns, pose)]
 
     def _start(self, calibrated: Calibrated) -> list[Output]:
@@ -177,7 +215,10 @@ class EstimationNode:
         waiting = nobody | ~self._calibrated.alignment.aligned
         statuses = sensor_statuses(self._intake.sensors, self._intake.checks, row.captured_ns, refused, waiting)
         statuses += unused_statuses(self._intake.unused)
-        pose = estimated_pose(row, running.model, running.ekf.estimate[0], running.valid, running.unseen, statuses)
+        notice = self._marks.notice_at(row.captured_ns)
+        pose = estimated_pose(
+            row, running.model, running.ekf.estimate[0], running.valid, running.unseen, notice, statuses
+        )
         return [Output(LIVE_POSE, row.captured_ns, pose)]
 
     def _is_live_due(self, captured_ns: int) -> bool:
@@ -197,6 +238,7 @@ class EstimationNode:
             "lone": None if self._lone is None else self._lone.snapshot(),
             "bias": None if self._bias is None else self._bias.snapshot(),
             "learning": self._learning.snapshot(),
+            "marks": self._marks.snapshot(),
             "next_live_ns": self._next_live_ns,
         }
 
@@ -217,6 +259,7 @@ class EstimationNode:
                 self._bias.restore(state["bias"])
                 self._believe(self._filter, self._bias.bias)
         self._learning.restore(state["learning"])
+        self._marks.restore(state["marks"])
         self._next_live_ns = state["next_live_ns"]
 
 

@@ -35,6 +35,11 @@ class StandingParameters:
     same_vertical: float = 0.17  # rad (10 deg) between two standings of the same person with the same straps
     sway: float = 0.012  # rad by which a standing segment's tilt differs between two instants
     likely_bias: float = 0.02  # rad/s, standard deviation of gyroscope biases before anything is known
+    remember_s: float = 12.0  # s of samples that a mark of the operator may lie back; the page offers up to 10 s
+    leaning: float = 0.07  # rad (4 deg) that a vertical may move within a marked standing; sway stays below 0.03
+    seated_thigh: float = 0.7  # rad (40 deg) between a thigh in a marked standing and in the standing before it
+    risen_s: float = 1.0  # s, in all, that a thigh leans back against a standing that must then have been sitting
+    risen_tolerance: float = 1.5  # m/s^2 between the mean over a block and gravity, for a lean to be told by it
     steepest_thigh: float = (
         0.7  # |cos| between skin normal and vertical; a sitting thigh is above, a standing one below
     )
@@ -171,6 +176,7 @@ class EstimationParameters:
         2.0  # s of standing at the start of the estimates: the filter settles in it; 0.5 costs 0.1
     )
     live_rate_hz: float = 25.0  # Hz of data time
+    notice_s: float = 8.0  # s for which the screen says what became of a mark
 
     def filter_of(self, description: SessionDescription) -> FilterParameters:
         """The filter of a session: `filter`, or the published one by name, and yaw as the walk's path asks for."""

@@ -32,6 +32,7 @@ class StandingReference:
     gyro_bias: Array  # (S, 3) rad/s, sensor frame
     usable: NDArray[np.bool_]
     wrong_units: NDArray[np.bool_]  # (S,) gravity is not what it must be
+    marked: bool = False  # by the operator, while the session ran
 
 
 @dataclass
@@ -59,6 +60,13 @@ class Sums:
         self.count += tick.fresh
         self.total += tick.samples * tick.fresh[:, None]
         self.square += tick.samples**2 * tick.fresh[:, None]
+
+    def add_ticks(self, samples: Array, fresh: NDArray[np.bool_]) -> None:
+        """Add samples (n, S, 6) where fresh (n, S)."""
+        counted = samples * fresh[:, :, None]
+        self.count += fresh.sum(axis=0)
+        self.total += counted.sum(axis=0)
+        self.square += (samples * counted).sum(axis=0)
 
     def add(self, other: "Sums") -> None:
         """Add what another sum holds."""
@@ -96,7 +104,10 @@ def is_still(block: Sums, limits: StandingParameters) -> bool:
 
 @dataclass
 class StandingDetector:
-    """Follows the ticks and keeps the newest standing that was long enough in `reference`."""
+    """Follows the ticks and keeps the newest standing that was long enough in `reference`.
+
+    After `decide` the operator's word stands, and what looks like standing later changes nothing.
+    """
 
     sensors: Sequence[SensorDescription]
     marked: Sequence[StandingInterval] = ()
@@ -104,6 +115,7 @@ class StandingDetector:
     reference: StandingReference | None = None
     is_still: bool = False
     is_sitting: bool = False
+    is_decided: bool = False
 
     def __post_init__(self) -> None:
         self._block_start_ns: int | None = None
@@ -111,6 +123,15 @@ class StandingDetector:
         self._newest_ns = 0
         self._block, self._held, self._span = (Sums.zero(len(self.sensors)) for _ in range(3))
         self._held_until_ns = 0
+
+    def decide(self, reference: StandingReference) -> None:
+        """The operator has marked a standing."""
+        self.reference, self.is_decided, self.is_sitting = reference, True, False
+        self.marked = ()
+
+    def withdraw(self) -> None:
+        """What was taken for standing was sitting: wait for another one."""
+        self.reference, self.is_decided, self.is_sitting = None, False, True
 
     def add(self, tick: Tick) -> None:
         """Take the next tick."""
@@ -131,7 +152,7 @@ class StandingDetector:
             self._span.add_tick(tick)
         elif tick.captured_ns > first.to_ns and self.reference is None:
             self.is_still = False
-            self.reference = self._refer(first.to_ns, (first.to_ns - first.from_ns) / 1e9)
+            self.reference = refer(self._span, first.to_ns, (first.to_ns - first.from_ns) / 1e9, self.parameters)
 
     def _close_block(self, now_ns: int) -> None:
         assert self._block_start_ns is not None
@@ -152,44 +173,18 @@ class StandingDetector:
         duration_s = (self._held_until_ns - self._span_start_ns) / 1e9
         if duration_s < self.parameters.shortest_s:
             return
-        candidate = self._refer(self._held_until_ns, duration_s)
-        self.is_sitting = self._sits(candidate)
+        if self.is_decided:
+            return
+        candidate = refer(self._span, self._held_until_ns, duration_s, self.parameters)
+        self.is_sitting = sits(candidate, self.sensors, self.parameters)
         if not self.is_sitting:
             self.reference = candidate
-
-    def _refer(self, until_ns: int, duration_s: float) -> StandingReference:
-        mean = self._span.mean()
-        seen = self._span.count > 0
-        gravity = np.linalg.norm(mean[:, FORCE], axis=1)
-        wrong = seen & (np.abs(gravity - self.parameters.gravity) > self.parameters.gravity_tolerance)
-        bias = mean[:, RATE] * self._trust_in_bias(duration_s)
-        return StandingReference(until_ns, duration_s, mean[:, FORCE], bias, seen & ~wrong, wrong)
-
-    def _trust_in_bias(self, duration_s: float) -> float:
-        """Share of the mean rate that is bias: what sways by an angle a turns at a mean rate of a / duration.
-
-        Least-squares mean of the prior (zero) and the measured rate: 0.99 after 10 s, 0.92 after 2 s, 0.74 after 1 s.
-        A shorter standing, which only the operator can mark, tells verticals alone.
-        """
-        limits = self.parameters
-        if duration_s < limits.shortest_s:
-            return 0.0
-        return 1.0 / (1.0 + (limits.sway / (duration_s * limits.likely_bias)) ** 2)
-
-    def _sits(self, reference: StandingReference) -> bool:
-        """A thigh whose skin normal points up or down is not upright. A lateral sensor cannot tell."""
-        for s, sensor in enumerate(self.sensors):
-            if sensor.segment in THIGHS and reference.usable[s]:
-                up = reference.mean_force[s] / np.linalg.norm(reference.mean_force[s])
-                if abs(float(up @ np.array(sensor.outward_axis))) > self.parameters.steepest_thigh:
-                    return True
-        return False
 
     def snapshot(self) -> State:
         """Everything but the description."""
         return {
             "reference": None if self.reference is None else pack_reference(self.reference),
-            "flags": [self.is_still, self.is_sitting],
+            "flags": [self.is_still, self.is_sitting, self.is_decided],
             "times_ns": [self._block_start_ns, self._span_start_ns, self._newest_ns, self._held_until_ns],
             "sums": [sums.pack() for sums in (self._block, self._held, self._span)],
         }
@@ -197,9 +192,40 @@ class StandingDetector:
     def restore(self, state: State) -> None:
         """Inverse of `snapshot`."""
         self.reference = None if state["reference"] is None else unpack_reference(state["reference"])
-        self.is_still, self.is_sitting = state["flags"]
+        self.is_still, self.is_sitting, self.is_decided = state["flags"]
+        self.marked = () if self.is_decided else self.marked
         self._block_start_ns, self._span_start_ns, self._newest_ns, self._held_until_ns = state["times_ns"]
         self._block, self._held, self._span = (Sums.unpack(packed) for packed in state["sums"])
+
+
+def refer(sums: Sums, until_ns: int, duration_s: float, limits: StandingParameters) -> StandingReference:
+    """What the samples of a standing tell: verticals, biases, sensors that cannot be used."""
+    mean, seen = sums.mean(), sums.count > 0
+    gravity = np.linalg.norm(mean[:, FORCE], axis=1)
+    wrong = seen & (np.abs(gravity - limits.gravity) > limits.gravity_tolerance)
+    bias = mean[:, RATE] * _trust_in_bias(duration_s, limits)
+    return StandingReference(until_ns, duration_s, mean[:, FORCE], bias, seen & ~wrong, wrong)
+
+
+def _trust_in_bias(duration_s: float, limits: StandingParameters) -> float:
+    """Share of the mean rate that is bias: what sways by an angle a turns at a mean rate of a / duration.
+
+    Least-squares mean of the prior (zero) and the measured rate: 0.99 after 10 s, 0.92 after 2 s, 0.74 after 1 s.
+    A shorter standing, which only a description can mark, tells verticals alone.
+    """
+    if duration_s < limits.shortest_s:
+        return 0.0
+    return 1.0 / (1.0 + (limits.sway / (duration_s * limits.likely_bias)) ** 2)
+
+
+def sits(reference: StandingReference, sensors: Sequence[SensorDescription], limits: StandingParameters) -> bool:
+    """A thigh whose skin normal points up or down is not upright. A lateral sensor cannot tell."""
+    for s, sensor in enumerate(sensors):
+        if sensor.segment in THIGHS and reference.usable[s]:
+            up = reference.mean_force[s] / np.linalg.norm(reference.mean_force[s])
+            if abs(float(up @ np.array(sensor.outward_axis))) > limits.steepest_thigh:
+                return True
+    return False
 
 
 def pack_reference(reference: StandingReference) -> State:
@@ -210,6 +236,7 @@ def pack_reference(reference: StandingReference) -> State:
         "means": pack_array(np.hstack([reference.mean_force, reference.gyro_bias])),
         "usable": [bool(flag) for flag in reference.usable],
         "wrong_units": [bool(flag) for flag in reference.wrong_units],
+        "marked": reference.marked,
     }
 
 
@@ -223,4 +250,5 @@ def unpack_reference(state: State) -> StandingReference:
         means[:, 3:].copy(),
         np.array(state["usable"], dtype=np.bool_),
         np.array(state["wrong_units"], dtype=np.bool_),
+        state["marked"],
     )

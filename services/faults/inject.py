@@ -65,7 +65,7 @@ class Injection:
                 rows = self._take(rows, takes)
             if changes is not None:
                 rows = self._change(rows, changes)
-        return ImuBatch(sensors=[_samples(samples) for samples in rows])
+        return ImuBatch(sensors=[_samples(samples) for samples in rows], marks=batch.marks)
 
     def _take(self, rows: Rows, takes: Loss) -> Rows:
         left: Rows = [[] for _ in rows]

@@ -41,6 +41,11 @@ class BusControl:
         """Ask the ingest that runs the session to end it."""
         self._order("stop", {"session": session}, TIMEOUT_S)
 
+    def mark(self, session: str, last_s: float, at_s: float | None) -> tuple[float, float]:
+        """Ask the ingest that runs the session to put the mark among its samples."""
+        answer = self._order("mark", {"session": session, "last_s": last_s, "at_s": at_s}, TIMEOUT_S)
+        return float(answer["from_s"]), float(answer["to_s"])
+
     def recordings(self) -> list[Source]:
         """Ask an ingest what it has."""
         answer = self._order("sources", {}, TIMEOUT_S)

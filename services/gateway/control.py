@@ -49,6 +49,9 @@ class Control(Protocol):
     def stop(self, session: str) -> None:
         """End a session's streams. Raises ControlRefused when the ingest does not run it."""
 
+    def mark(self, session: str, last_s: float, at_s: float | None) -> tuple[float, float]:
+        """Mark the last seconds as standing; the span, s of session time. Raises ControlRefused with the reason."""
+
     def recordings(self) -> list[Source]:
         """Recordings that an ingest has at hand."""
 

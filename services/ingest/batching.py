@@ -64,7 +64,7 @@ def joined(first: SourceMessage, second: SourceMessage) -> SourceMessage:
     match first.payload, second.payload:
         case ImuBatch() as a, ImuBatch() as b:
             sensors = [_joined_samples(x, y) for x, y in zip(a.sensors, b.sensors, strict=True)]
-            return second._replace(payload=ImuBatch(sensors=sensors))
+            return second._replace(payload=ImuBatch(sensors=sensors, marks=a.marks + b.marks))
         case ReferenceBatch() as a, ReferenceBatch() as b:
             batch = ReferenceBatch(captured_ns=a.captured_ns + b.captured_ns, values=a.values + b.values)
             return second._replace(payload=batch)

@@ -32,6 +32,16 @@ class StartOrder(Order):
     ticks: Annotated[int, Field(ge=1, le=5)] = 1
 
 
+class MarkOrder(Order):
+    """The operator saw the person stand still for the last seconds."""
+
+    session: str
+    last_s: Annotated[float, Field(ge=1.0, le=10.0)] = 3.0
+    at_s: Annotated[float, Field(ge=0.0, le=1e7)] | None = Field(
+        default=None, description="session time on her screen, s; null: the newest sample"
+    )
+
+
 class StopOrder(Order):
     """End a session's streams."""
 

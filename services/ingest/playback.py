@@ -7,6 +7,7 @@ from collections.abc import Iterator
 from concurrent.futures import Future, ThreadPoolExecutor
 
 from schemas.health import Progress, SessionHealth
+from schemas.imu import ImuBatch, StandingMark
 from schemas.session import SessionDescription
 from schemas.signals import session_token_key
 from services.bus.connection import Bus
@@ -14,7 +15,7 @@ from services.bus.logs import event
 from services.bus.publisher import StreamPublisher
 from services.ingest.batching import Batcher, BatchGovernor
 from services.ingest.driver import Source, SourceMessage, streams_of
-from services.ingest.orders import StartOrder
+from services.ingest.orders import InvalidOrder, MarkOrder, StartOrder
 from services.ingest.pacing import AsFastAsFollowed, Pace, Readers, RealTime
 from services.ingest.parameters import PARAMETERS, IngestParameters
 
@@ -88,6 +89,7 @@ class Playback:
         self._publishers = {stream: StreamPublisher(bus, session, stream) for stream in streams_of(description)}
         self._token = bus.declare_token(session_token_key(bus.settings.site, session))
         self._captured_ns = 0
+        self._marks: list[StandingMark] = []
         self._done_ns: dict[str, int] = {}
         self._last_step_s = now_s
         self._is_recorded = False
@@ -115,6 +117,21 @@ class Playback:
             publisher.end(0 if newest is None else newest.captured_ns)
         self.ended_at_s = now_s
         logger.info(event("session_ended", session=self.description.session, captured_ns=self._captured_ns))
+
+    def span_of(self, order: MarkOrder) -> tuple[int, int]:
+        """Session times from and to, ns, that a mark means. May be called on any thread.
+
+        Raises InvalidOrder for a session whose samples have ended.
+        """
+        newest_ns = self._captured_ns
+        if self.ended_at_s is not None:
+            raise InvalidOrder(f"session {order.session} has ended; start it again to mark a standing")
+        to_ns = newest_ns if order.at_s is None else min(round(order.at_s * 1e9), newest_ns)
+        return max(0, to_ns - round(order.last_s * 1e9)), to_ns
+
+    def mark(self, from_ns: int, to_ns: int) -> None:
+        """Send a mark with the next samples: in the stream, so that it is archived and replayed where it was given."""
+        self._marks.append(StandingMark(from_ns=from_ns, to_ns=to_ns, given_ns=self._captured_ns))
 
     def note_progress(self, service: str, progress: Progress, now_s: float) -> None:
         """A reader said how far it is."""
@@ -168,6 +185,10 @@ class Playback:
                 self._send(batch)
 
     def _send(self, message: SourceMessage) -> None:
-        envelope = self._publishers[message.stream].send(message.captured_ns, message.payload)
+        payload = message.payload
+        if self._marks and isinstance(payload, ImuBatch):
+            payload = payload.model_copy(update={"marks": payload.marks + self._marks})
+            self._marks = []
+        envelope = self._publishers[message.stream].send(message.captured_ns, payload)
         self.readers.sent(message.stream.name, envelope.sequence, message.captured_ns)
         self._captured_ns = max(self._captured_ns, message.captured_ns)

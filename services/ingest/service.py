@@ -22,7 +22,7 @@ from services.ingest.data import find_data
 from services.ingest.driver import Source
 from services.ingest.errors import SourceError
 from services.ingest.manifest import load_manifest
-from services.ingest.orders import InvalidOrder, StartOrder, StopOrder, parse_order, refusal
+from services.ingest.orders import InvalidOrder, MarkOrder, StartOrder, StopOrder, parse_order, refusal
 from services.ingest.parameters import PARAMETERS, IngestParameters
 from services.ingest.playback import Playback
 from services.ingest.source import known_recordings, open_source
@@ -82,7 +82,7 @@ class IngestService:
         handles = [bus.serve(description_key(site, "*"), self._describe)]
         handles += [
             bus.serve(command_key(site, SERVICE, command), self._answering(carry_out))
-            for command, carry_out in (("start", self._start), ("stop", self._stop), ("sources", self._sources))
+            for command, carry_out in self._commands().items()
         ]
         handles += [
             bus.watch_tokens(service_token_key(site, service, "*"), self._service_seen) for service in SAMPLE_READERS
@@ -94,6 +94,9 @@ class IngestService:
         self._threads.shutdown(wait=False, cancel_futures=True)
         loop.close()
         health.close()
+
+    def _commands(self) -> dict[str, Callable[[bytes], bytes]]:
+        return {"start": self._start, "stop": self._stop, "mark": self._mark, "sources": self._sources}
 
     def _answering(
         self, carry_out: Callable[[bytes], bytes]
@@ -137,6 +140,16 @@ class IngestService:
                 playback.readers.expect(service, now_s)
         self._running[description.session] = playback
         logger.info(event("session_started", session=description.session, source=order.source, speed=order.speed))
+
+    def _mark(self, body: bytes) -> bytes:
+        order = parse_order(MarkOrder, body)
+        playback = self._running.get(order.session)
+        if playback is None:
+            raise InvalidOrder(f"session {order.session[:80]} does not run here")
+        from_ns, to_ns = playback.span_of(order)
+        self._loop.post(lambda: playback.mark(from_ns, to_ns))
+        logger.info(event("standing_marked", session=order.session, from_ns=from_ns, to_ns=to_ns))
+        return json.dumps({"session": order.session, "from_s": from_ns / 1e9, "to_s": to_ns / 1e9}).encode()
 
     def _stop(self, body: bytes) -> bytes:
         order = parse_order(StopOrder, body)

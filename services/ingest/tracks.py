@@ -53,7 +53,8 @@ def hub_messages(stream: Stream, tracks: Sequence[ImuTrack], tick_ns: int) -> It
                         "specific_force": forces[cut[k] : cut[k + 1]],
                     }
                     for (times, rates, forces), cut in zip(columns, cuts, strict=True)
-                ]
+                ],
+                "marks": [],
             }
         )
         newest = max(samples.captured_ns[-1] for samples in batch.sensors if samples.captured_ns)

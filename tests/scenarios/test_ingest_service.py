@@ -161,6 +161,32 @@ def test_a_replay_waits_for_its_slowest_reader(stage):
     wait_until(followed)
 
 
+def test_a_mark_travels_in_the_samples(stage):
+    """Once, in the first message after it; the samples are those of a session without it."""
+    stage.start("synthetic:walk?duration=30&seed=2", speed=2.0)
+    wait_until(lambda: len(stage.of("s1")) > 600)
+    answer = stage.order("mark", {"session": "s1", "last_s": 2.0})
+    assert answer["to_s"] - answer["from_s"] == pytest.approx(2.0)
+    earlier = stage.order("mark", {"session": "s1", "last_s": 1.0, "at_s": 1.5})
+    assert (earlier["from_s"], earlier["to_s"]) == (0.5, 1.5)
+    wait_until(lambda: len(stage.of("s1")) > 800)
+    stage.order("stop", {"session": "s1"})
+    wait_until(lambda: stage.ends("s1") == 2)
+    imu = [(envelope, json.loads(body)) for name, envelope, body in stage.of("s1") if name == "imu/walker" and body]
+    marked = [(envelope, body["marks"]) for envelope, body in imu if body["marks"]]
+    marks = [mark for _, given in marked for mark in given]
+    assert [(mark["from_ns"], mark["to_ns"]) for mark in marks[1:]] == [(500_000_000, 1_500_000_000)]
+    assert (marks[0]["to_ns"] / 1e9, marks[0]["from_ns"] / 1e9) == (answer["to_s"], answer["from_s"])
+    for envelope, given in marked:
+        before = imu[envelope.sequence - 1][0]
+        assert all(before.captured_ns <= mark["given_ns"] < envelope.captured_ns for mark in given)
+    expected = [json.loads(body)["sensors"] for name, _, body in plain("synthetic:walk?duration=30&seed=2")
+                if name == "imu/walker" and body]  # fmt: skip
+    assert [body["sensors"] for _, body in imu] == expected[: len(imu)]
+    assert "has ended" in stage.order("mark", {"session": "s1"})["error"]
+    assert "does not run here" in stage.order("mark", {"session": "other"})["error"]
+
+
 def test_stop_closes_the_streams(stage):
     stage.start("synthetic:walk?duration=600", speed=1.0)
     wait_until(lambda: len(stage.of("s1")) > 20)

@@ -51,7 +51,8 @@ def describe(session: str) -> SessionDescription:
 def sample(number: int) -> ImuBatch:
     """One hub message whose sample time is its number."""
     zero = [0.0, 0.0, 0.0]
-    return ImuBatch(sensors=[SensorSamples(captured_ns=[number], angular_velocity=[zero], specific_force=[zero])])
+    samples = SensorSamples(captured_ns=[number], angular_velocity=[zero], specific_force=[zero])
+    return ImuBatch(sensors=[samples], marks=[])
 
 
 class FakeIngest:

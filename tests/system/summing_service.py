@@ -61,8 +61,8 @@ class SummingNode:
 
 def _pose(captured_ns: int) -> LivePose:
     return LivePose(
-        captured_ns=captured_ns, phase="estimating", message="", segments=[], angles={}, angles_std={}, sensors=[],
-        cadence_per_min=None,
+        captured_ns=captured_ns, phase="estimating", message="", notice="", segments=[], angles={}, angles_std={},
+        sensors=[], cadence_per_min=None,
     )  # fmt: skip
 
 

@@ -122,7 +122,7 @@ class Patient:
             angular_velocity=[[random(), random(), number]],
             specific_force=[[0.0, 9.81, 0.0]],
         )
-        payload = ImuBatch(sensors=[samples]).model_dump_json().encode()
+        payload = ImuBatch(sensors=[samples], marks=[]).model_dump_json().encode()
         self.publishers[stream].send_encoded(Envelope(0, number, number * 10**7), payload)
         self.sent[stream] += 1
 

@@ -1,8 +1,10 @@
 """A person at the page: real services, a synthetic walk, a real browser."""
 
+import json
 import os
 import socket
 import time
+import urllib.request
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -175,3 +177,31 @@ def test_the_page_of_the_api_works_without_the_internet(site, page):
     keep(page, "docs")
     assert browsers.complaints(page) == []
     assert browsers.hosts_asked(page) == {site.url.removeprefix("http://")}
+
+
+def begin(url: str, source: str) -> str:
+    """A session asked for by REST; its id."""
+    body = json.dumps({"source": source}).encode()
+    request = urllib.request.Request(f"{url}/v1/sessions", body, {"Content-Type": "application/json"})
+    with urllib.request.urlopen(request, timeout=30) as answer:
+        return str(json.load(answer)["id"])
+
+
+def test_the_operator_marks_standing_and_is_told_when_it_was_none(site, page):
+    """The walker stands for long, is marked, walks off, and is marked again while it walks."""
+    session = begin(site.url, "synthetic:walk?standing=25&duration=120&seed=5")
+    page.get(f"{site.url}/#/sessions/{session}")
+    wait(page, lambda: "walk a few steps" in text(page, ".session-head .chip").lower(), "standing is found")
+    time.sleep(3.0)
+    page.find_element(By.CSS_SELECTOR, "button.mark").click()
+    wait(page, lambda: text(page, ".session-head + .banner") == "Standing taken as marked", "the mark is taken")
+    keep(page, "marked")
+    wait(page, lambda: text(page, ".session-head .chip") == "Live", "the session is live")
+    page.find_element(By.CSS_SELECTOR, "button.mark").click()
+    wait(
+        page, lambda: text(page, ".session-head + .banner").startswith("Not taken as standing: "), "the mark is refused"
+    )
+    assert text(page, ".session-head + .banner").endswith(" moved")
+    keep(page, "mark-refused")
+    wait(page, lambda: text(page, ".session-head + .banner") == "", "the notice goes by itself")
+    assert browsers.complaints(page) == []

@@ -27,5 +27,5 @@ def worn_only(
     for message in messages:
         if isinstance(message.payload, ImuBatch):
             sensors = [message.payload.sensors[i] for i in kept[message.stream.source]]
-            message = Message(message.stream, message.envelope, ImuBatch(sensors=sensors))
+            message = Message(message.stream, message.envelope, ImuBatch(sensors=sensors, marks=message.payload.marks))
         yield message

@@ -200,7 +200,7 @@ def sample(number: int) -> bytes:
         SensorSamples(captured_ns=[int(number * 1e9 / RATE_HZ)], angular_velocity=[vector()], specific_force=[vector()])
         for _ in range(SENSORS)
     ]
-    return ImuBatch(sensors=sensors).model_dump_json().encode()
+    return ImuBatch(sensors=sensors, marks=[]).model_dump_json().encode()
 
 
 @contextmanager

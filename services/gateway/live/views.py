@@ -60,6 +60,7 @@ def pose_view(poses: list[LivePose], age_s: float) -> View:
         "age_s": round(age_s, 3),
         "phase": pose.phase,
         "message": pose.message,
+        "notice": pose.notice,
         "segments": {
             each.segment.value: {
                 "position": _rounded(each.position),

@@ -57,6 +57,27 @@ class SessionIn(BaseModel):
     patient: Code | None = Field(default=None, description="patient code; null to link it later")
 
 
+class MarkIn(BaseModel):
+    """The person stands still now, and has for some seconds."""
+
+    model_config = ConfigDict(extra="forbid")
+
+    last_s: float = Field(default=3.0, ge=1, le=10, description="s of standing", examples=[3.0])
+    at_s: float | None = Field(
+        default=None, ge=0, le=1e7, description="s: session time on the screen; null for the newest", examples=[12.4]
+    )
+
+
+class MarkOut(BaseModel):
+    """A mark on its way. Whether it is taken for standing is said by `notice` in the live stream."""
+
+    model_config = ConfigDict(extra="forbid")
+
+    session: str = Field(description="session id", examples=["8d0c2a71f04be655"])
+    from_s: float = Field(ge=0, description="s of session time", examples=[9.4])
+    to_s: float = Field(ge=0, description="s of session time", examples=[12.4])
+
+
 class SessionLink(BaseModel):
     """To whom a session belongs."""
 

@@ -16,6 +16,8 @@ from services.gateway.problems import Problem, documented
 from services.gateway.sessions import records, shapes
 from services.gateway.sessions.models import (
     CurvesOut,
+    MarkIn,
+    MarkOut,
     MetricsOut,
     SessionIn,
     SessionLink,
@@ -110,6 +112,28 @@ def stop_session(session: SessionId, gateway: Context) -> SessionOut:
     except ControlRefused as error:
         raise Problem(HTTPStatus.CONFLICT, str(error), "Read the session again; it may have ended.") from error
     return answer
+
+
+@router.post(
+    "/{session}/marks",
+    status_code=HTTPStatus.ACCEPTED,
+    responses=documented(HTTPStatus.NOT_FOUND, HTTPStatus.CONFLICT, HTTPStatus.SERVICE_UNAVAILABLE),
+)
+def mark_standing(session: SessionId, body: MarkIn, gateway: Context) -> MarkOut:
+    """Mark the last seconds of a running session as standing.
+
+    Before the first steps it is the standing that counts; later, all angles refer to it from then on. A mark in which
+    the person moved or sat is refused: the live stream says why.
+    """
+    with gateway.database.transaction() as database:
+        records.get_session(database, session)
+    try:
+        from_s, to_s = gateway.control.mark(session, body.last_s, body.at_s)
+    except ControlUnavailable as error:
+        raise Problem(HTTPStatus.SERVICE_UNAVAILABLE, str(error), START_SERVICES) from error
+    except ControlRefused as error:
+        raise Problem(HTTPStatus.CONFLICT, str(error), "Only a session that runs can be marked.") from error
+    return MarkOut(session=session, from_s=from_s, to_s=to_s)
 
 
 @router.get("/{session}/metrics", responses=documented(HTTPStatus.NOT_FOUND))

@@ -26,7 +26,7 @@ def test_a_publisher_numbers_keeps_and_answers(connect, wait_until):
     bus, asker = connect(), connect()
     publisher = StreamPublisher(bus, "s", HUB)
     for number in range(3):
-        assert publisher.send(number, ImuBatch(sensors=[])) == Envelope(0, number, number)
+        assert publisher.send(number, ImuBatch(sensors=[], marks=[])) == Envelope(0, number, number)
     publisher.end(3)
     key = replay_key("test", "s", IMU, "hub")
     # A server that was declared just now may not be known yet.
@@ -42,7 +42,7 @@ def test_a_publisher_numbers_keeps_and_answers(connect, wait_until):
 
 def test_epochs_number_from_zero(connect):
     publisher = StreamPublisher(connect(), "s", HUB)
-    numbers = [publisher.send(0, ImuBatch(sensors=[]), epoch).sequence for epoch in (0, 0, 4, 4, 4)]
+    numbers = [publisher.send(0, ImuBatch(sensors=[], marks=[]), epoch).sequence for epoch in (0, 0, 4, 4, 4)]
     assert numbers == [0, 1, 0, 1, 2]
     publisher.end(0)
     assert publisher.newest == Envelope(4, 3, 0, final=True)

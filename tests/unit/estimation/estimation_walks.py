@@ -125,7 +125,8 @@ def messages(
         rows = [SEGMENTS.index(sensor.segment) for sensor in hub.sensors]
         for sequence, start in enumerate(range(0, len(samples) - ticks + 1, ticks)):
             times = [k * 10_000_000 + offset_ns[i] for k in range(start, start + ticks)]
-            batch = ImuBatch(sensors=[sensor_samples(times, samples[start : start + ticks, row]) for row in rows])
+            spoken = [sensor_samples(times, samples[start : start + ticks, row]) for row in rows]
+            batch = ImuBatch(sensors=spoken, marks=[])
             result.append(Message(Stream(IMU, hub.name), Envelope(0, sequence, times[-1]), batch))
     return sorted(result, key=lambda message: message.envelope.captured_ns)
 

@@ -175,7 +175,7 @@ def test_sitting_is_not_taken_for_standing() -> None:
     for s in (walks.SEGMENTS.index(Segment.THIGH_LEFT), walks.SEGMENTS.index(Segment.THIGH_RIGHT)):
         samples[:, s, 3:] = [0.3, -0.2, 9.8] + samples[:, s, :3]
     outputs = walks.run(EstimationNode(walks.describe()), walks.messages(walks.describe(), samples[:250]))
-    assert walks.pictures(outputs)[-1].message == "Please stand up straight"
+    assert walks.pictures(outputs)[-1].message == "Sitting, not standing: please stand up straight"
     assert not walks.joint_states(outputs)
 
 
@@ -184,7 +184,7 @@ def test_a_hub_with_another_number_of_sensors_is_refused() -> None:
     first = walks.messages(description, walks.walk()[1])[0]
     assert isinstance(first.payload, ImuBatch)
     node = EstimationNode(description)
-    assert node.step(Message(first.stream, first.envelope, ImuBatch(sensors=first.payload.sensors[:3]))) == []
+    assert node.step(Message(first.stream, first.envelope, ImuBatch(sensors=first.payload.sensors[:3], marks=[]))) == []
     assert [(r.subject, r.reason, r.count) for r in node.rejections()] == [("hub0", Reason.WRONG_SHAPE, 1)]
 
 
@@ -196,7 +196,7 @@ def test_unknown_estimator_says_which_there_are() -> None:
 def test_empty_messages_lead_to_nothing() -> None:
     description = walks.describe()
     stream = walks.messages(description, walks.walk()[1])
-    empty = ImuBatch(sensors=[walks.sensor_samples([], np.zeros((0, 6)))] * 5)
+    empty = ImuBatch(sensors=[walks.sensor_samples([], np.zeros((0, 6)))] * 5, marks=[])
     node = EstimationNode(description)
     outputs = []
     for message in stream:

@@ -26,7 +26,9 @@ def stream(n: int = 100) -> list[Message]:
         )
 
     body = [
-        Message(Stream(IMU, "hub"), Envelope(0, i, i * 10_000_000), ImuBatch(sensors=[samples(i), samples(i)]))
+        Message(
+            Stream(IMU, "hub"), Envelope(0, i, i * 10_000_000), ImuBatch(sensors=[samples(i), samples(i)], marks=[])
+        )
         for i in range(n)
     ]
     return [*body, Message(Stream(IMU, "hub"), Envelope(0, n, n * 10_000_000, final=True), None)]
@@ -98,7 +100,7 @@ def in_batches_of(count: int) -> list[Message]:
             for s in range(2)
         ]
         joined.append(
-            Message(Stream(IMU, "hub"), Envelope(0, i, samples[0].captured_ns[-1]), ImuBatch(sensors=samples))
+            Message(Stream(IMU, "hub"), Envelope(0, i, samples[0].captured_ns[-1]), ImuBatch(sensors=samples, marks=[]))
         )
     return joined
 

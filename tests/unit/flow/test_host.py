@@ -53,7 +53,8 @@ class Adder:
 
 def message(stream: Stream, sequence: int, value: int = 0, epoch: int = 0, *, final: bool = False) -> Message:
     samples = SensorSamples(captured_ns=[value], angular_velocity=[[0.0] * 3], specific_force=[[0.0] * 3])
-    return Message(stream, Envelope(epoch, sequence, value, final), None if final else ImuBatch(sensors=[samples]))
+    batch = ImuBatch(sensors=[samples], marks=[])
+    return Message(stream, Envelope(epoch, sequence, value, final), None if final else batch)
 
 
 def stream_of(values: list[int]) -> list[Message]:

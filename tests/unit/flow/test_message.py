@@ -54,7 +54,7 @@ def test_floats_survive_to_the_bit(vectors):
     samples = SensorSamples(
         captured_ns=list(range(count)), angular_velocity=[list(v) for v in vectors], specific_force=[[0.0] * 3] * count
     )
-    batch = ImuBatch(sensors=[samples])
+    batch = ImuBatch(sensors=[samples], marks=[])
     assert decode_payload(IMU, Envelope(0, 0, 0), encode_payload(batch)) == batch
 
 

@@ -20,6 +20,7 @@ class FakeControl:
 
     started: list[StartRequest] = field(default_factory=list)
     stopped: list[str] = field(default_factory=list)
+    marked: list[tuple[str, float, float | None]] = field(default_factory=list)
     trouble: Exception | None = None
 
     def start(self, request: StartRequest) -> SessionDescription:
@@ -32,6 +33,13 @@ class FakeControl:
         if session not in [request.session for request in self.started]:
             raise ControlRefused(f"session {session} does not run here")
         self.stopped.append(session)
+
+    def mark(self, session: str, last_s: float, at_s: float | None) -> tuple[float, float]:
+        self._fail()
+        if session not in [request.session for request in self.started]:
+            raise ControlRefused(f"session {session} does not run here")
+        self.marked.append((session, last_s, at_s))
+        return 9.4, 9.4 + last_s
 
     def recordings(self) -> list[Source]:
         self._fail()

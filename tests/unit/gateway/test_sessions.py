@@ -132,6 +132,31 @@ def test_a_stop_that_fails_says_so(client, control, trouble, status):
     assert client.post(f"/v1/sessions/{session}/stop").status_code == status
 
 
+def test_a_mark_reaches_the_ingest_with_the_time_on_the_screen(client, control):
+    session = client.post("/v1/sessions", json={"source": "synthetic:walk"}).json()["id"]
+    answer = client.post(f"/v1/sessions/{session}/marks", json={"last_s": 5.0, "at_s": 14.4})
+    assert answer.status_code == HTTPStatus.ACCEPTED
+    assert answer.json() == {"session": session, "from_s": 9.4, "to_s": 14.4}
+    client.post(f"/v1/sessions/{session}/marks", json={})
+    assert control.marked == [(session, 5.0, 14.4), (session, 3.0, None)]
+
+
+@pytest.mark.parametrize("body", [{"last_s": 0.5}, {"last_s": 11}, {"at_s": -1}, {"last_s": "x"}, {"kind": "sitting"}])
+def test_what_is_no_mark_is_refused(client, control, body):
+    session = client.post("/v1/sessions", json={"source": "synthetic:walk"}).json()["id"]
+    answer = client.post(f"/v1/sessions/{session}/marks", json=body)
+    assert answer.status_code == HTTPStatus.UNPROCESSABLE_ENTITY
+    assert control.marked == []
+
+
+def test_a_session_that_does_not_run_cannot_be_marked(client, control, gateway, made):
+    assert client.post("/v1/sessions/0000000000000000/marks", json={}).status_code == HTTPStatus.NOT_FOUND
+    gateway.keeper.appeared(made.describe("feed"))
+    answer = client.post("/v1/sessions/feed/marks", json={})
+    assert answer.status_code == HTTPStatus.CONFLICT
+    assert "does not run here" in answer.json()["detail"]
+
+
 def test_metrics_and_curves_come_back_as_they_were_measured(client, gateway, made):
     session = start(client).json()["id"]
     for part in ("metrics", "curves"):

@@ -77,7 +77,7 @@ def pose_at(at_s: float, lost: str | None = None, phase: str = "estimating", mes
         for segment in WORN
     ]
     return LivePose(
-        captured_ns=round(at_s * 1e9), phase=phase, message=message, segments=segments, angles=angles,
+        captured_ns=round(at_s * 1e9), phase=phase, message=message, notice="", segments=segments, angles=angles,
         angles_std=stds, sensors=sensors, cadence_per_min=109.0 if phase == "estimating" else None,
     )  # fmt: skip
 

@@ -20,7 +20,8 @@ def test_published_schema_is_a_valid_json_schema(text):
 
 def test_a_real_message_meets_its_published_schema():
     batch = ImuBatch(
-        sensors=[SensorSamples(captured_ns=[1], angular_velocity=[[0, 0, 0]], specific_force=[[0, 9.8, 0]])]
+        sensors=[SensorSamples(captured_ns=[1], angular_velocity=[[0, 0, 0]], specific_force=[[0, 9.8, 0]])],
+        marks=[],
     )
     schema = json.loads((PUBLISHED / "imu.schema.json").read_text())
     jsonschema.validate(json.loads(batch.model_dump_json()), schema)

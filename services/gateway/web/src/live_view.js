@@ -15,6 +15,7 @@ const JOINTS = [
   { joint: "hip_flexion", title: "Hip flexion", range: [-30, 50] },
   { joint: "knee_flexion", title: "Knee flexion", range: [-10, 80] },
 ];
+const MARK_LENGTHS = [3, 5, 10];
 const VIEWS = { side: "Side", front: "Front", back: "Back" };
 
 export class LiveView {
@@ -41,6 +42,16 @@ export class LiveView {
     this.elapsed = el("span", { class: "elapsed" });
     this.advice = el("p", { class: "banner", role: "status", hidden: true });
     this.link = new PatientLink(this.session);
+    this.markLength = el(
+      "select",
+      { "aria-label": "Seconds of standing" },
+      ...MARK_LENGTHS.map((seconds) => el("option", { value: seconds }, `last ${seconds} s`)),
+    );
+    this.markButton = el(
+      "button",
+      { class: "mark", type: "button", title: "The person stands upright and still", onclick: () => this.mark() },
+      "Standing now",
+    );
     this.stopButton = el("button", { class: "danger", type: "button", onclick: () => this.stop() }, "Stop");
     this.title = el("h1", {}, this.session.title);
     this.stage = el("div", { class: "stage" });
@@ -57,6 +68,8 @@ export class LiveView {
         this.ageText,
         el("span", { class: "spring" }),
         this.link.node,
+        this.markLength,
+        this.markButton,
         this.stopButton,
       ),
       this.advice,
@@ -126,8 +139,8 @@ export class LiveView {
       this.sensors = pose.sensors;
       this.heard(pose.age_s);
       say(this.elapsed, clock(pose.at_s));
-      say(this.advice, pose.message);
-      this.advice.hidden = pose.message === "" || pose.phase !== "estimating";
+      this.advise([pose.notice, pose.phase === "estimating" ? pose.message : ""].filter(Boolean).join(". "));
+      this.atS = pose.at_s;
       const figure = this.body && figureOf(pose, this.body);
       if (figure) this.skeleton.show(figure);
       for (const chart of this.charts) chart.add(pose, pose.trail);
@@ -199,6 +212,23 @@ export class LiveView {
     );
   }
 
+  advise(text) {
+    say(this.advice, text);
+    this.advice.hidden = text === "";
+  }
+
+  /** The last seconds on this screen were standing. Whether they were is answered by the next skeletons' notice. */
+  async mark() {
+    this.markButton.disabled = true;
+    try {
+      await post(`/sessions/${this.session.id}/marks`, { last_s: Number(this.markLength.value), at_s: this.atS ?? null });
+    } catch (problem) {
+      this.advise(problem.message);
+    } finally {
+      this.markButton.disabled = false;
+    }
+  }
+
   async stop() {
     this.stopButton.disabled = true;
     try {
@@ -206,8 +236,7 @@ export class LiveView {
       say(this.stopButton, "Stopping …");
     } catch (problem) {
       this.stopButton.disabled = false;
-      say(this.advice, problem.message);
-      this.advice.hidden = false;
+      this.advise(problem.message);
     }
   }
 
