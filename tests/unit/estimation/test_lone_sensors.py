@@ -21,8 +21,10 @@ SHANKS = frozenset({Segment.SHANK_LEFT, Segment.SHANK_RIGHT})
 
 
 @cache
-def session(worn: frozenset[Segment], ticks: int = 1) -> tuple[SessionDescription, tuple[Message, ...]]:
-    source = open_source(WALK, session="s", estimator="ekf")
+def session(
+    worn: frozenset[Segment], ticks: int = 1, walk: str = WALK
+) -> tuple[SessionDescription, tuple[Message, ...]]:
+    source = open_source(walk, session="s", estimator="ekf")
     description = source.describe()
     messages = [m for m in worn_only(iter_messages(source, ticks), description, worn) if m.stream.signal.name == "imu"]
     return wearing(description, worn), tuple(m for m in messages if m.payload is not None)
@@ -114,3 +116,19 @@ def test_the_calibration_says_what_is_used_and_what_is_not():
     assert states.pop("foot_left") is SensorState.UNUSED
     assert set(states.values()) == {SensorState.OK}
     assert picture.message == ""
+
+
+@pytest.mark.parametrize("worn", [FEET, BACK], ids=["feet", "back"])
+def test_walking_alone_will_do(worn):
+    """The standing at both ends is cut off."""
+    description, messages = session(worn, walk=WALK.replace("duration=12", "duration=18"))
+    node = EstimationNode(description)
+    outputs = [output for message in messages[430:1300] for output in node.step(message)] + node.finish()
+    [calibration] = payloads(outputs, Calibration)
+    assert calibration.method == "walking alone"
+    assert calibration.quality <= 0.4
+    [expected] = payloads(run(worn), Calibration)
+    for ours, theirs in zip(calibration.sensors, expected.sensors, strict=True):
+        # The mean posture of walking is not that of standing, and the simulated foot rolls all through stance.
+        apart = 2 * np.arccos(min(1.0, abs(np.dot(ours.quat_segment_from_sensor, theirs.quat_segment_from_sensor))))
+        assert apart < 0.35
