@@ -46,8 +46,6 @@ def tilt(normal: float, tangential: float) -> float:
 
 def wrapped(angle: float) -> float:
     """`angle` within [-pi, pi)."""
-    if -pi <= angle < pi:
-        return angle
     return (angle + pi) % (2.0 * pi) - pi
 
 
@@ -68,12 +66,14 @@ class AngleBiasFilter:
         p01 = self._p01 - dt_s * self._p11
         p11 = self._p11 + noise.bias_noise
         # H = [1 0]
-        innovation = wrapped(measured - angle)
+        innovation = measured - angle
+        if abs(innovation) > pi:
+            innovation = wrapped(innovation)
         gain_angle, gain_bias = p00 / (p00 + noise.tilt_noise), p01 / (p00 + noise.tilt_noise)
-        self.angle = angle + gain_angle * innovation
+        self.angle = angle = angle + gain_angle * innovation
         self.bias += gain_bias * innovation
         self._p00, self._p01, self._p11 = (1.0 - gain_angle) * p00, (1.0 - gain_angle) * p01, p11 - gain_bias * p01
-        return self.angle
+        return angle
 
 
 class AngleFilter:
@@ -89,9 +89,12 @@ class AngleFilter:
         angle = self.angle + rate * dt_s
         p = self._p + self._angle_noise
         gain = p / (p + self._tilt_noise)
-        self.angle = angle + gain * wrapped(measured - angle)
+        innovation = measured - angle
+        if abs(innovation) > pi:
+            innovation = wrapped(innovation)
+        self.angle = angle = angle + gain * innovation
         self._p = (1.0 - gain) * p
-        return self.angle
+        return angle
 
 
 class ConventionalKnee:

@@ -1,0 +1,96 @@
+"""Kept libraries on the same samples, where they are installed (`pip install .[peers]`)."""
+
+import contextlib
+import importlib.util
+import io
+import time
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.spatial.transform import Rotation
+
+from services.bench.knee.recordings import KneeRecording
+from services.biomech.two_sensor_knee.mcgrath import knee_flexion, segment_frame
+
+Array = NDArray[np.float64]
+
+
+class PeerResult(NamedTuple):
+    """A peer's angle (n,), rad in McGrath's datum up to sign, its axis, and its processor time."""
+
+    angle: Array
+    axes: Array  # (2, 3)
+    seconds_per_sample: float
+
+
+def missing(*libraries: str) -> str | None:
+    """Why a peer cannot run here; None when all libraries are installed."""
+    absent = [name for name in libraries if importlib.util.find_spec(name) is None]
+    return f"not installed: {', '.join(absent)}" if absent else None
+
+
+def orientations(recording: KneeRecording) -> tuple[Array, Array]:
+    """R_world_from_sensor (n, 3, 3) of thigh and shank by VQF without magnetometer; world z up."""
+    from vqf import VQF
+
+    matrices = []
+    for s in range(2):
+        rate = np.ascontiguousarray(recording.rate[:, s])
+        quat = VQF(1.0 / recording.rate_hz).updateBatch(rate, np.ascontiguousarray(recording.force[:, s]))["quat6D"]
+        matrices.append(Rotation.from_quat(quat, scalar_first=True).as_matrix())
+    return matrices[0], matrices[1]
+
+
+def mcgrath(recording: KneeRecording) -> PeerResult:
+    """The published method on VQF orientations; nothing ties the headings."""
+    begin = time.thread_time()
+    thigh, shank = orientations(recording)
+    angle, axes = knee_flexion(thigh, shank, recording.rate[:, 0], recording.rate[:, 1])
+    return PeerResult(angle, axes, (time.thread_time() - begin) / len(angle))
+
+
+def olsson_axis(recording: KneeRecording) -> Array:
+    """Axis (2, 3) by `qmt.jointAxisEstHingeOlsson`, of both senses as the library gives them."""
+    from qmt import jointAxisEstHingeOlsson
+
+    arrays = [np.ascontiguousarray(a[:, s]) for a in (recording.force, recording.rate) for s in range(2)]
+    with contextlib.redirect_stdout(io.StringIO()):  # it prints each iteration
+        first, second = jointAxisEstHingeOlsson(*arrays)
+    return np.stack([np.ravel(first), np.ravel(second)])
+
+
+def qmt_heading(recording: KneeRecording) -> PeerResult:
+    """VQF, Olsson's axis over the whole recording, `qmt.headingCorrection` along it."""
+    from qmt import headingCorrection
+
+    begin = time.thread_time()
+    thigh, shank = orientations(recording)
+    axes = olsson_axis(recording)
+    quats = [Rotation.from_matrix(R).as_quat(scalar_first=True) for R in (thigh, shank)]
+    times = np.arange(len(thigh)) / recording.rate_hz
+    with contextlib.redirect_stdout(io.StringIO()):
+        corrected = headingCorrection(
+            recording.rate[:, 0].copy(), recording.rate[:, 1].copy(), quats[0], quats[1], times, axes[1], None
+        )[0]
+    relative = np.swapaxes(thigh, 1, 2) @ Rotation.from_quat(corrected, scalar_first=True).as_matrix()
+    return PeerResult(_twist(relative, axes), axes, (time.thread_time() - begin) / len(thigh))
+
+
+def dfjimu_mekf(recording: KneeRecording) -> PeerResult:
+    """`dfjimu.mekf_acc`, lever arms estimated; it gives orientations, the axis is the principal one of its own."""
+    from dfjimu import mekf_acc
+
+    begin = time.thread_time()
+    arrays = [np.ascontiguousarray(a[:, s]) for a in (recording.rate, recording.force) for s in range(2)]
+    with contextlib.redirect_stdout(io.StringIO()):
+        first, second = mekf_acc(*arrays, Fs=recording.rate_hz, q_init=np.array([1.0, 0.0, 0.0, 0.0]))
+    thigh, shank = (Rotation.from_quat(q, scalar_first=True).as_matrix() for q in (first, second))
+    _, axes = knee_flexion(thigh, shank, recording.rate[:, 0], recording.rate[:, 1])
+    relative = np.swapaxes(thigh, 1, 2) @ shank
+    return PeerResult(_twist(relative, axes), axes, (time.thread_time() - begin) / len(thigh))
+
+
+def _twist(R_thigh_from_shank: Array, axes: Array) -> Array:
+    R = segment_frame(axes[0]).T @ R_thigh_from_shank @ segment_frame(axes[1])
+    return np.arctan2(R[:, 1, 0] - R[:, 0, 1], R[:, 0, 0] + R[:, 1, 1])
