@@ -1,6 +1,6 @@
 """A plain line chart as SVG text."""
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from html import escape
 from itertools import groupby
 from math import floor, isfinite, log10
@@ -53,13 +53,7 @@ def line_chart(
         up = (y - y_ticks[0]) / (y_ticks[-1] - y_ticks[0])
         return LEFT + across * (WIDTH - LEFT - RIGHT), HEIGHT - BOTTOM - up * (HEIGHT - TOP - BOTTOM)
 
-    parts = [_text(LEFT, TOP - 20, title, size=15)]
-    for tick in x_ticks:
-        x, y = place(tick, y_ticks[0])
-        parts += [_rule(x, y, x, TOP), _power(x, y + 19, tick) if log_x else _text(x, y + 19, f"{tick:g}", "middle")]
-    for tick in y_ticks:
-        x, y = place(x_ticks[0], tick)
-        parts += [_rule(x, y, WIDTH - RIGHT, y), _text(x - 8, y + 4, f"{tick:g}", "end")]
+    parts = [_text(LEFT, TOP - 20, title, size=15), *_grid(place, x_ticks, y_ticks, log_x=log_x)]
     for i, (name, height) in enumerate(levels.items()):
         y = place(x_ticks[0], height)[1]
         parts.append(_polyline([(LEFT, y), (WIDTH - RIGHT, y)], LEVEL_COLOUR, DASHES[i % len(DASHES)]))
@@ -68,12 +62,29 @@ def line_chart(
         drawn = [place(log10(x) if log_x else x, y) if isfinite(y) else None for x, y in line]
         colour = colours.get(name, COLOURS[i % len(COLOURS)])
         parts += _line(drawn, colour) + _legend(colour, name, i)
-    parts.append(_text((LEFT + WIDTH - RIGHT) / 2, HEIGHT - 14, x_label, "middle"))
-    middle = (TOP + HEIGHT - BOTTOM) / 2
-    parts.append(f'<g transform="rotate(-90 18 {middle:g})">{_text(18, middle, y_label, "middle")}</g>')
+    parts += _labels(x_label, y_label)
     size = f'width="{WIDTH}" height="{HEIGHT}" viewBox="0 0 {WIDTH} {HEIGHT}"'
     head = f'<svg xmlns="http://www.w3.org/2000/svg" {size} font-family="sans-serif">'
     return "\n".join([head, f'<rect width="{WIDTH}" height="{HEIGHT}" fill="white"/>', *parts, "</svg>", ""])
+
+
+def _grid(
+    place: Callable[[float, float], tuple[float, float]], x_ticks: list[float], y_ticks: list[float], *, log_x: bool
+) -> list[str]:
+    parts = []
+    for tick in x_ticks:
+        x, y = place(tick, y_ticks[0])
+        parts += [_rule(x, y, x, TOP), _power(x, y + 19, tick) if log_x else _text(x, y + 19, f"{tick:g}", "middle")]
+    for tick in y_ticks:
+        x, y = place(x_ticks[0], tick)
+        parts += [_rule(x, y, WIDTH - RIGHT, y), _text(x - 8, y + 4, f"{tick:g}", "end")]
+    return parts
+
+
+def _labels(x_label: str, y_label: str) -> list[str]:
+    middle = (TOP + HEIGHT - BOTTOM) / 2
+    beside = f'<g transform="rotate(-90 18 {middle:g})">{_text(18, middle, y_label, "middle")}</g>'
+    return [_text((LEFT + WIDTH - RIGHT) / 2, HEIGHT - 14, x_label, "middle"), beside]
 
 
 def _ticks(values: Sequence[float], *, whole: bool = False) -> list[float]:
