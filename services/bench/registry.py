@@ -62,7 +62,7 @@ def strides(json_path: Path | None = None, *subject: str) -> Scoreboard:
 
 
 def events(json_path: Path | None = None, *subject: str) -> Scoreboard:
-    """Initial contact and toe-off of two shank sensors against force plates."""
+    """Initial contact and toe-off by shanks, feet and lower back against what others saw."""
     from services.bench.gait.events import run
 
     return run(json_path, *subject)
