@@ -20,6 +20,7 @@ from services.estimation.standing import THIGHS, StandingReference, Sums, refer,
 from services.flow.node import State
 
 SITTING = "sitting, not standing"
+EVERYTHING = "the person"
 
 
 @dataclass(frozen=True)
@@ -69,7 +70,7 @@ class RecentMotion:
             return Refused(f"only {duration_s:.2g} s of samples, {self.parameters.shortest_s:g} s are needed")
         moved = [sensor.name for s, sensor in enumerate(self.sensors) if self._moved(s, blocks)]
         if moved:
-            return Refused(f"{', '.join(moved)} moved")
+            return Refused(f"{', '.join(moved) if len(moved) < len(self.sensors) else EVERYTHING} moved")
         total = Sums.zero(len(self.sensors))
         for block in blocks:
             total.add(block.sums)

@@ -85,7 +85,7 @@ class EstimationNode:
                 outputs += self._hear(mark, ticks[0].captured_ns)
             self._marks.watch(ticks)
             outputs += self._follow(ticks)
-        return self._wait(batch) if self._filter is None else outputs
+        return self._wait(batch.captured_ns) if self._filter is None else outputs
 
     def _follow(self, run: Sequence[Tick]) -> list[Output]:
         """Until the calibration each tick is looked at by itself: how samples were batched must decide nothing."""
@@ -117,36 +117,35 @@ class EstimationNode:
             self._marks.refuse("no sensor could be aligned", now_ns)
             return []
         self._marks.say("Angles refer to the marked standing from now on", now_ns)
-        self._calibrated = calibrated
-        self._filter, self._lone = self._new_filter(calibrated), self._new_lone(calibrated)
-        self._filter.continue_from(before)
+        self._adopt(calibrated).continue_from(before)
         return [Output(CALIBRATION, now_ns, calibration_message(self._description, self._intake, calibrated))]
 
-    def _wait(self, batch: TickBatch) -> list[Output]:
-        if not self._is_live_due(batch.captured_ns):
+    def _wait(self, now_ns: int) -> list[Output]:
+        if not self._is_live_due(now_ns):
             return []
         phase = "waiting" if self._calibrator.reference is None else "calibrating"
-        everyone = np.ones(len(self._intake.sensors), dtype=np.bool_)
-        statuses = sensor_statuses(
-            self._intake.sensors, self._intake.checks, batch.captured_ns, self._calibrator.refused, everyone
-        ) + unused_statuses(self._intake.unused)
-        pose = waiting_pose(
-            batch.captured_ns, phase, self._calibrator.message(), self._marks.notice_at(batch.captured_ns), statuses
-        )
-        return [Output(LIVE_POSE, batch.captured_ns, pose)]
+        sensors, checks = self._intake.sensors, self._intake.checks
+        everyone = np.ones(len(sensors), dtype=np.bool_)
+        statuses = sensor_statuses(sensors, checks, now_ns, self._calibrator.refused, everyone)
+        statuses += unused_statuses(self._intake.unused)
+        pose = waiting_pose(now_ns, phase, self._calibrator.message(), self._marks.notice_at(now_ns), statuses)
+        return [Output(LIVE_POSE, now_ns, pose)]
 
     def _start(self, calibrated: Calibrated) -> list[Output]:
         """Publish the calibration and catch up with the walk."""
-        self._calibrated = calibrated
-        self._filter, self._lone = self._new_filter(calibrated), self._new_lone(calibrated)
-        self._bias = self._new_bias(calibrated)
-        start_rhythm(self._filter.rhythm, self._description.known_rhythms)
+        running = self._adopt(calibrated)
+        start_rhythm(running.rhythm, self._description.known_rhythms)
         kept = self._calibrator.batches
         message = calibration_message(self._description, self._intake, calibrated)
         outputs = [Output(CALIBRATION, kept[0].captured_ns, message)]
         while kept:
-            outputs += self._estimate(self._filter, kept.pop(0).ticks)
+            outputs += self._estimate(running, kept.pop(0).ticks)
         return outputs
+
+    def _adopt(self, calibrated: Calibrated) -> LowerBodyFilter:
+        self._calibrated, self._filter = calibrated, self._new_filter(calibrated)
+        self._lone, self._bias = self._new_lone(calibrated), self._new_bias(calibrated)
+        return self._filter
 
     def _new_filter(self, calibrated: Calibrated) -> LowerBodyFilter:
         parameters = self._parameters.filter_of(self._description)
@@ -209,10 +208,8 @@ class EstimationNode:
         """The picture of the newest row, when its time has come. None while catching up: nobody could watch it."""
         if self._calibrator.batches or not self._is_live_due(row.captured_ns):
             return []
-        nobody = np.zeros(len(self._intake.sensors), dtype=np.bool_)
-        refused = self._calibrator.refused
         assert self._calibrated is not None
-        waiting = nobody | ~self._calibrated.alignment.aligned
+        refused, waiting = self._calibrator.refused, ~self._calibrated.alignment.aligned
         statuses = sensor_statuses(self._intake.sensors, self._intake.checks, row.captured_ns, refused, waiting)
         statuses += unused_statuses(self._intake.unused)
         notice = self._marks.notice_at(row.captured_ns)
@@ -248,16 +245,13 @@ class EstimationNode:
         self._calibrator.restore(state["calibrator"])
         self._calibrated, self._filter, self._lone, self._bias = None, None, None, None
         if state["calibrated"] is not None:
-            self._calibrated = unpack_calibrated(state["calibrated"])
-            self._filter = self._new_filter(self._calibrated)
-            self._filter.restore(state["filter"])
-            self._lone = self._new_lone(self._calibrated)
+            running = self._adopt(unpack_calibrated(state["calibrated"]))
+            running.restore(state["filter"])
             if self._lone is not None:
                 self._lone.restore(state["lone"])
-            self._bias = self._new_bias(self._calibrated)
             if self._bias is not None:
                 self._bias.restore(state["bias"])
-                self._believe(self._filter, self._bias.bias)
+                self._believe(running, self._bias.bias)
         self._learning.restore(state["learning"])
         self._marks.restore(state["marks"])
         self._next_live_ns = state["next_live_ns"]

@@ -14,6 +14,7 @@ from services.bus.connection import Bus
 from services.bus.loop import EventLoop
 from services.bus.router import open_router
 from services.bus.settings import BusSettings
+from services.cli import live
 from services.flow.message import encode_payload
 from services.ingest.driver import streams_of
 from services.ingest.parameters import IngestParameters
@@ -165,8 +166,8 @@ def test_a_mark_travels_in_the_samples(stage):
     """Once, in the first message after it; the samples are those of a session without it."""
     stage.start("synthetic:walk?duration=30&seed=2", speed=2.0)
     wait_until(lambda: len(stage.of("s1")) > 600)
-    answer = stage.order("mark", {"session": "s1", "last_s": 2.0})
-    assert answer["to_s"] - answer["from_s"] == pytest.approx(2.0)
+    from_s, to_s = live.mark_standing(stage.bus, "s1", 2.0)
+    assert to_s - from_s == pytest.approx(2.0)
     earlier = stage.order("mark", {"session": "s1", "last_s": 1.0, "at_s": 1.5})
     assert (earlier["from_s"], earlier["to_s"]) == (0.5, 1.5)
     wait_until(lambda: len(stage.of("s1")) > 800)
@@ -176,7 +177,7 @@ def test_a_mark_travels_in_the_samples(stage):
     marked = [(envelope, body["marks"]) for envelope, body in imu if body["marks"]]
     marks = [mark for _, given in marked for mark in given]
     assert [(mark["from_ns"], mark["to_ns"]) for mark in marks[1:]] == [(500_000_000, 1_500_000_000)]
-    assert (marks[0]["to_ns"] / 1e9, marks[0]["from_ns"] / 1e9) == (answer["to_s"], answer["from_s"])
+    assert (marks[0]["to_ns"] / 1e9, marks[0]["from_ns"] / 1e9) == (to_s, from_s)
     for envelope, given in marked:
         before = imu[envelope.sequence - 1][0]
         assert all(before.captured_ns <= mark["given_ns"] < envelope.captured_ns for mark in given)
@@ -184,7 +185,8 @@ def test_a_mark_travels_in_the_samples(stage):
                 if name == "imu/walker" and body]  # fmt: skip
     assert [body["sensors"] for _, body in imu] == expected[: len(imu)]
     assert "has ended" in stage.order("mark", {"session": "s1"})["error"]
-    assert "does not run here" in stage.order("mark", {"session": "other"})["error"]
+    with pytest.raises(live.NotStarted, match="does not run here"):
+        live.mark_standing(stage.bus, "other", 2.0)
 
 
 def test_stop_closes_the_streams(stage):
