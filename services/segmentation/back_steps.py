@@ -1,4 +1,4 @@
-"""Steps told by a sensor on the lower back alone: initial contacts of both feet, with their sides."""
+"""Steps told by a sensor on the lower back alone: contacts and toe-offs of both feet, with their sides."""
 
 import math
 from dataclasses import asdict, dataclass, field
@@ -13,7 +13,7 @@ from services.segmentation.swing import Contact, turning_point
 
 
 class SidedContact(NamedTuple):
-    """A contact and the foot it belongs to."""
+    """A contact or toe-off and the foot it belongs to."""
 
     side: Side
     contact: Contact
@@ -27,10 +27,17 @@ class Smoothed(NamedTuple):
     right: float  # m/s^2
 
 
-class Held(NamedTuple):
-    """A contact with the evidence of its side: positive is left, m/s^2."""
+class Catch(NamedTuple):
+    """One foot comes down, then the other one leaves the ground."""
 
-    captured_ns: int
+    contact_ns: int
+    toe_off_ns: int
+
+
+class Held(NamedTuple):
+    """A catch with the evidence of its side: positive is a left contact, m/s^2."""
+
+    catch: Catch
     leftness: float
 
 
@@ -44,8 +51,8 @@ class BackState:
     top: tuple[int, float] | None = None  # where the last climb was highest
     bottom: float = 0.0  # m/s^2 below that climb
     own_climbs: list[float] = field(default_factory=list)  # m/s^2
-    pending_ns: list[int] = field(default_factory=list)  # contacts whose side is not seen yet
-    held: list[Held] = field(default_factory=list)  # the run of contacts at hand, newest last
+    pending: list[Catch] = field(default_factory=list)  # those whose side is not seen yet
+    held: list[Held] = field(default_factory=list)  # the run at hand, newest last
     own_steps_s: list[float] = field(default_factory=list)  # between them
     walking: bool = False
     leftness: float = 0.0
@@ -56,7 +63,8 @@ class BackStepDetector:
 
     The smoothed upward acceleration climbs once a step, while the weight falls on the leading leg; contact lies a
     constant time after the steepest rise (the derivative that McCamley et al. 2012 take for it; here causal, with a
-    smoothing of bounded length). A climb counts when it is large for this person.
+    smoothing of bounded length). A climb counts when it is large for this person. The other foot leaves the ground a
+    constant time after the top.
 
     Side: on one leg the trunk is pushed away from the foot that stands, so at a left contact the rightward
     acceleration changes from negative to positive. Contacts alternate, so half of the last evidence counts against.
@@ -69,13 +77,13 @@ class BackStepDetector:
         self.state = BackState()
 
     def step(self, captured_ns: int, up: float, right: float) -> list[SidedContact]:
-        """Take the acceleration without gravity, m/s^2, and hand out the contacts that are now known, in order."""
+        """Take the acceleration without gravity, m/s^2, and hand out the events that are now known, in order."""
         newest = self._smooth(captured_ns, up, right)
         self._climb(newest)
         p, state = self.parameters, self.state
         found: list[SidedContact] = []
-        while state.pending_ns and newest.captured_ns >= state.pending_ns[0] + int(p.back_side_after_s * 1e9):
-            found += self._place(state.pending_ns.pop(0))
+        while state.pending and newest.captured_ns >= state.pending[0].contact_ns + int(p.back_side_after_s * 1e9):
+            found += self._place(state.pending.pop(0))
         return found
 
     def interrupt(self) -> None:
@@ -120,7 +128,8 @@ class BackStepDetector:
         climb = state.top[1] - state.bottom
         if climb >= least and state.top[1] - value >= least:
             contact_ns = self._steepest_ns(state.top[0]) + int(self.parameters.back_contact_after_rise_s * 1e9)
-            state.pending_ns.append(contact_ns)
+            toe_off_ns = state.top[0] + int(self.parameters.back_toe_off_after_top_s * 1e9)
+            state.pending.append(Catch(contact_ns, toe_off_ns))
             state.own_climbs = [*state.own_climbs[-self.parameters.back_climb_memory + 1 :], climb]
             state.climbing, state.bottom = False, value
 
@@ -140,29 +149,29 @@ class BackStepDetector:
             return top_ns
         return turning_point(slopes, max(range(len(slopes)), key=lambda i: slopes[i][1]))
 
-    def _place(self, contact_ns: int) -> list[SidedContact]:
-        """Put a contact into the run of contacts; what may be handed out."""
+    def _place(self, catch: Catch) -> list[SidedContact]:
+        """Put a catch into the run of them; what may be handed out."""
         p, state = self.parameters, self.state
-        since_s = (contact_ns - state.held[-1].captured_ns) * 1e-9 if state.held else None
+        since_s = (catch.contact_ns - state.held[-1].catch.contact_ns) * 1e-9 if state.held else None
         if since_s is not None and since_s < p.back_shortest_step_s:
             return []
         if since_s is None or not self._is_even(since_s):
             state.held, state.own_steps_s, state.walking, state.leftness = [], [], False, 0.0
         else:
             state.own_steps_s = [*state.own_steps_s[-p.back_step_memory + 1 :], since_s]
-        state.leftness = self._push_right(contact_ns) - 0.5 * state.leftness
-        state.held.append(Held(contact_ns, state.leftness))
+        state.leftness = self._push_right(catch.contact_ns) - 0.5 * state.leftness
+        state.held.append(Held(catch, state.leftness))
         if not state.walking and len(state.held) < p.back_fewest_contacts:
             return []
         found = state.held[-1:] if state.walking else state.held
         state.held, state.walking = state.held[-1:], True
-        return [
-            SidedContact(
-                Side.LEFT if held.leftness > 0 else Side.RIGHT,
-                Contact(GaitEventKind.INITIAL_CONTACT, held.captured_ns, p.back_contact_std_s),
-            )
-            for held in found
-        ]
+        return [event for held in found for event in self._events(held)]
+
+    def _events(self, held: Held) -> list[SidedContact]:
+        p, side = self.parameters, Side.LEFT if held.leftness > 0 else Side.RIGHT
+        contact = Contact(GaitEventKind.INITIAL_CONTACT, held.catch.contact_ns, p.back_contact_std_s)
+        toe_off = Contact(GaitEventKind.TOE_OFF, held.catch.toe_off_ns, p.back_toe_off_std_s)
+        return [SidedContact(side, contact), SidedContact(side.other, toe_off)]
 
     def _is_even(self, step_s: float) -> bool:
         """Whether a step is as long as the others of its run."""
@@ -199,8 +208,8 @@ class BackStepDetector:
             top=None if top is None else (top[0], top[1]),
             bottom=state["bottom"],
             own_climbs=list(state["own_climbs"]),
-            pending_ns=list(state["pending_ns"]),
-            held=[Held(*row) for row in state["held"]],
+            pending=[Catch(*row) for row in state["pending"]],
+            held=[Held(Catch(*catch), leftness) for catch, leftness in state["held"]],
             own_steps_s=list(state["own_steps_s"]),
             walking=state["walking"],
             leftness=state["leftness"],

@@ -63,6 +63,10 @@ class SegmentationParameters:
     """s from the steepest rise to contact: mean of three people (0.10, 0.06 and 0.04)."""
     back_contact_std_s: float = 0.05
     """s, one standard deviation of a contact: 25 ms within those people, 30 between them, 52 in two others."""
+    back_toe_off_after_top_s: float = 0.08
+    """s from the top of the climb to the toe-off of the other foot: the same three people (0.09, 0.07 and 0.08)."""
+    back_toe_off_std_s: float = 0.04
+    """s, one standard deviation of a toe-off: 15 to 30 ms within those people."""
     back_side_edge_s: float = 0.05
     """s around a contact that tell nothing of its side."""
     back_side_before_s: float = 0.3

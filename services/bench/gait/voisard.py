@@ -27,13 +27,13 @@ IC, TO = GaitEventKind.INITIAL_CONTACT, GaitEventKind.TOE_OFF
 
 
 def voisard_rows() -> list[Row]:
-    """Contacts by the lower back, contacts and toe-offs by the feet; one row that says why without the data."""
+    """Contacts and toe-offs by the lower back and by the feet; one row that says why without the data."""
     rows: list[Row] = []
     try:
         for people, trials in (("adults 2 and 3", SCORED), ("adult 1, tuned on", TUNED)):
-            for sensor, worn, kinds in (("back", BACK, (IC,)), ("feet", FEET, (IC, TO))):
+            for sensor, worn in (("back", BACK), ("feet", FEET)):
                 walks = [detections(trial, worn) for trial in trials]
-                for kind in kinds:
+                for kind in GaitEventKind:
                     name = f"voisard {people}, {sensor}, {kind.value.replace('_', ' ')}"
                     found = detection_rows(name, [walk[kind] for walk in walks])
                     rows += [replace(row, detail=trials is TUNED) for row in found]

@@ -24,9 +24,14 @@ def walk(
     return list(zip(np.round(time_s * 1e9).astype(int).tolist(), up.tolist(), right.tolist(), strict=True))
 
 
-def found(rows, detector=None):
+def events(rows, detector=None):
     detector = detector or BackStepDetector(PARAMETERS)
     return [(ns, step) for ns, up, right in rows for step in detector.step(ns, up, right)]
+
+
+def found(rows, detector=None):
+    """The contacts alone."""
+    return [(ns, step) for ns, step in events(rows, detector) if step.contact.kind is GaitEventKind.INITIAL_CONTACT]
 
 
 @pytest.mark.parametrize("rate_hz", [40.0, 100.0, 204.8])
@@ -57,20 +62,30 @@ def test_events_come_after_their_time_and_within_bounds():
     assert min(late) > 0
     assert max(late[PARAMETERS.back_fewest_contacts :]) < 0.5
     assert max(late) < 0.5 + PARAMETERS.back_fewest_contacts * STEP_S
-    assert {step.contact.kind for _, step in steps} == {GaitEventKind.INITIAL_CONTACT}
     assert {step.contact.std_s for _, step in steps} == {PARAMETERS.back_contact_std_s}
+
+
+def test_the_other_foot_leaves_the_ground_after_each_contact():
+    all_events = [step for _, step in events(walk())]
+    for landed, lifted in zip(all_events[::2], all_events[1::2], strict=True):
+        assert lifted.contact.kind is GaitEventKind.TOE_OFF
+        assert lifted.side is landed.side.other
+        # From the steepest rise to the top is a quarter of a period.
+        after_s = STEP_S / 4 + PARAMETERS.back_toe_off_after_top_s - PARAMETERS.back_contact_after_rise_s
+        assert (lifted.contact.captured_ns - landed.contact.captured_ns) * 1e-9 == pytest.approx(after_s, abs=0.03)
+    assert all(step.contact.captured_ns <= ns for ns, step in events(walk()))
 
 
 def test_standing_is_no_step():
     random = np.random.default_rng(4)
     rows = [(k * 10_000_000, *(0.3 * random.normal(size=2)).tolist()) for k in range(3000)]
-    assert found(rows) == []
+    assert events(rows) == []
 
 
 def test_two_movements_are_no_walk():
     """Sitting down and getting up again."""
     rows = [(ns, up if 2.0 < ns * 1e-9 < 3.1 else 0.0, 0.0) for ns, up, _ in walk()]
-    assert found(rows) == []
+    assert events(rows) == []
 
 
 def test_a_step_that_is_small_for_the_person_is_no_step():
@@ -90,9 +105,9 @@ def test_a_missed_step_does_not_swap_the_feet():
 def test_a_resumed_detector_goes_on_alike(cut):
     rows = walk()
     first, resumed = BackStepDetector(PARAMETERS), BackStepDetector(PARAMETERS)
-    steps = found(rows[:cut], first)
+    steps = events(rows[:cut], first)
     resumed.restore(json.loads(json.dumps(first.snapshot())))
-    assert steps + found(rows[cut:], resumed) == found(rows)
+    assert steps + events(rows[cut:], resumed) == events(rows)
 
 
 def test_an_interruption_begins_anew():

@@ -101,10 +101,9 @@ def without(messages, from_s: float, to_s: float):
 def test_the_back_gives_contacts_and_strides_of_both_feet():
     outputs = run(BACK)
     events, strides = payloads(outputs, GaitEvent), payloads(outputs, Stride)
-    assert {event.kind for event in events} == {IC}
-    assert len(events) == pytest.approx(14.0 / (STRIDE_S / 2), abs=4)
+    assert len([event for event in events if event.kind is IC]) == pytest.approx(14.0 / (STRIDE_S / 2), abs=4)
     assert len(strides) >= 20
-    assert all(stride.valid and stride.toe_off_ns is None and stride.step_length_m is None for stride in strides)
+    assert all(stride.valid and stride.toe_off_ns is not None and stride.step_length_m is None for stride in strides)
     np.testing.assert_allclose([stride.stride_time_s for stride in strides], STRIDE_S, atol=0.03)
     np.testing.assert_allclose([stride.step_time_s for stride in strides], STRIDE_S / 2, atol=0.03)
     assert all(stride.curves == {} for stride in strides)
