@@ -27,6 +27,14 @@ def test_speed_null_means_as_fast_as_possible_and_absent_means_real_time(client,
     assert [request.speed for request in control.started] == [None, 1.0]
 
 
+def test_the_path_of_the_walk_is_the_operator_s_choice_and_else_the_source_s(client, control):
+    start(client, walk_path="straight", estimator="joukov_published")
+    start(client)
+    assert [request.walk_path for request in control.started] == ["straight", None]
+    assert control.started[0].estimator == "joukov_published"
+    assert start(client, walk_path="circle").status_code == HTTPStatus.UNPROCESSABLE_ENTITY
+
+
 def test_a_session_can_be_started_for_a_patient(client):
     code = client.post("/v1/patients", json={}).json()["code"]
     session = start(client, patient=code).json()
