@@ -71,7 +71,7 @@ def _mean_angle(error: Array) -> float:
 
 def axis_errors(found: Array, true: Array) -> Array:
     """Angle, rad, between lines (2, 3): a common turn round of both axes is no error, of one alone it is."""
-    sense = np.sign(np.sum(found * true))
+    sense = 1.0 if np.sum(found * true) >= 0.0 else -1.0
     return np.asarray(np.arccos(np.clip(sense * np.sum(found * true, axis=1), -1.0, 1.0)))
 
 

@@ -51,7 +51,7 @@ def settle_zero(memory: Memory, parameters: Record) -> None:
     Sitting on a bicycle is upright enough, but there the knee moves to both sides.
     """
     knee, posture = memory.knee[0], memory.posture[0]
-    if knee.is_zero_set > 0.0 or not is_upright(memory, parameters):
+    if not is_upright(memory, parameters):
         return
     angle = posture.angle / posture.weight
     variance = max(posture.angle2 / posture.weight - angle * angle, 0.0)
@@ -60,7 +60,9 @@ def settle_zero(memory: Memory, parameters: Record) -> None:
     zero = angle + wrapped(zero - angle)
     is_one_sided = (angle - zero) ** 2 > parameters.one_sided**2 * variance
     knee.is_standing = 1.0 if is_one_sided else 0.0
-    knee.zero = zero if is_one_sided else 0.0
+    knee.standing_angle = zero
+    if knee.is_zero_set == 0.0:
+        knee.zero = zero if is_one_sided else 0.0
 
 
 @compiled
@@ -172,12 +174,13 @@ def settle_sign(memory: Memory, parameters: Record) -> None:
     if is_upright_thigh and arm_length(memory, THIGH) >= parameters.shortest_arm:
         covariance = posture.angle_height / posture.weight - angle * height
         evidence = -covariance / sqrt(angle_variance * height_variance)
-    if knee.is_zero_set > 0.0 or knee.is_standing > 0.0:
-        evidence += min(max((angle - knee.zero) / sqrt(angle_variance), -1.0), 1.0)
+    if knee.is_standing > 0.0:
+        evidence += min(max((angle - knee.standing_angle) / sqrt(angle_variance), -1.0), 1.0)
     if evidence < -parameters.sign_evidence:
         memory.axes[:] *= -1.0
         knee.angle *= -1.0
         knee.zero *= -1.0
+        knee.standing_angle *= -1.0
         posture.angle *= -1.0
         posture.angle_height *= -1.0
     if abs(evidence) > parameters.sign_evidence:

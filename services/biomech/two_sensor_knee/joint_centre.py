@@ -101,7 +101,7 @@ def largest_square(rate: FloatArray) -> float:
     """Square of the faster sensor's rate, (rad/s)^2."""
     first = rate[0, 0] ** 2 + rate[0, 1] ** 2 + rate[0, 2] ** 2
     second = rate[1, 0] ** 2 + rate[1, 1] ** 2 + rate[1, 2] ** 2
-    return max(first, second)
+    return float(max(first, second))
 
 
 @compiled

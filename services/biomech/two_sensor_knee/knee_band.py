@@ -1,10 +1,11 @@
 """The knee band beside the published one: any rate, axes in any direction, biases told while it runs, usable at once.
 
-Each segment has an inclination about the flexion axis and a gyroscope bias. Gravity is believed the less, the more
-the specific force differs from it and the less of it lies across the axis. What the angle is worth is said from the
-first sample on.
+Each segment has an inclination about the flexion axis and a gyroscope bias. The specific force is averaged in the
+upright frame that the gyroscope keeps, and believed the less, the less of it lies across the axis. What the angle is
+worth is said from the first sample on.
 """
 
+from cmath import phase, rect
 from dataclasses import dataclass
 from math import atan2, inf, isfinite, radians, sqrt
 from typing import NamedTuple
@@ -31,11 +32,11 @@ class BandParameters:
     start_bias_std: float = radians(1.0)
     """rad/s."""
     tilt_std: float = radians(2.0)
-    """rad. Inclination by gravity at rest: soft tissue and calibration."""
-    tilt_correlation_s: float = 0.1
-    """s. Errors of gravity live this long, so a faster sensor does not know more. [T]"""
-    dynamic_gain: float = 4.0
-    """Tilt error, in rad, for a specific force that differs from gravity by g. [T]"""
+    """rad. Inclination by gravity, averaged: soft tissue and calibration."""
+    level_time_s: float = 2.1
+    """s. Averaging of the specific force in the upright frame; as `LevelParameters`."""
+    dynamic_gain: float = 1.0
+    """Error of the first sample's inclination, rad, for a specific force that differs from gravity by g."""
     largest_bias: float = radians(5.0)
     """rad/s."""
 
@@ -55,33 +56,42 @@ class Inclination:
         self.parameters = parameters
         self.angle, self.bias = 0.0, 0.0
         self.p00, self.p01, self.p11 = inf, 0.0, parameters.start_bias_std**2
+        self.mean, self.elapsed_s = 0j, 0.0
 
     def step(self, rate: float, along: float, across: float, force: float, dt_s: float) -> None:
         """Rate about the axis (rad/s); specific force along and across the reference direction, and its length."""
         parameters = self.parameters
-        noise = self._tilt_variance(along, across, force)
-        measured = atan2(across, along)
         if not isfinite(self.p00):
-            self.angle, self.p00 = measured, noise
+            dynamic = parameters.dynamic_gain * (force - GRAVITY) / GRAVITY
+            self.angle = atan2(across, along)
+            self.p00 = (parameters.tilt_std**2 + dynamic**2) / self._share(along, across)
+            self.mean, self.elapsed_s = complex(abs(complex(along, across)), 0.0), dt_s
             return
+        self.elapsed_s += dt_s
         self.angle += (rate - self.bias) * dt_s
         self.p00 += dt_s * (-2.0 * self.p01 + dt_s * self.p11 + parameters.rate_noise**2)
         self.p01 -= dt_s * self.p11
         self.p11 += dt_s * parameters.bias_wander**2
-        # Errors that live for a while count once in that while, not at every sample.
-        scale = self.p00 + noise * max(1.0, parameters.tilt_correlation_s / dt_s)
-        gain_angle, gain_bias = self.p00 / scale, self.p01 / scale
-        innovation = wrapped(measured - self.angle)
+        # In the upright frame gravity stands still and motion averages out.
+        gain = dt_s / min(self.elapsed_s, parameters.level_time_s)
+        self.mean += gain * (complex(along, across) * rect(1.0, -self.angle) - self.mean)
+        self._correct(phase(self.mean), self._share(self.mean.real, self.mean.imag), dt_s)
+
+    def _correct(self, innovation: float, share: float, dt_s: float) -> None:
+        """Kalman update by the mean's inclination, whose errors live as long as the mean."""
+        parameters = self.parameters
+        noise = parameters.tilt_std**2 / share * max(1.0, 2.0 * parameters.level_time_s / dt_s)
+        gain_angle, gain_bias = self.p00 / (self.p00 + noise), self.p01 / (self.p00 + noise)
         self.angle += gain_angle * innovation
+        self.mean *= rect(1.0, -gain_angle * innovation)
         self.bias = min(max(self.bias + gain_bias * innovation, -parameters.largest_bias), parameters.largest_bias)
         self.p11 -= gain_bias * self.p01
         self.p00, self.p01 = (1.0 - gain_angle) * self.p00, (1.0 - gain_angle) * self.p01
 
-    def _tilt_variance(self, along: float, across: float, force: float) -> float:
-        """rad^2. A shorter projection tells the direction less well; other accelerations mislead it."""
-        share = max(sqrt(along * along + across * across) / GRAVITY, 1e-3)
-        dynamic = self.parameters.dynamic_gain * (force - GRAVITY) / GRAVITY
-        return (self.parameters.tilt_std**2 + dynamic**2) / share**2
+    @staticmethod
+    def _share(along: float, across: float) -> float:
+        """Square of the share of gravity that lies across the axis: a shorter projection tells the angle less well."""
+        return min(1.0, max((along * along + across * across) / GRAVITY**2, 1e-6))
 
 
 class KneeBand:
@@ -129,12 +139,22 @@ class KneeBand:
     def snapshot(self) -> State:
         """Everything that changes, as JSON values."""
         return {
-            name: [i.angle, i.bias, i.p00 if isfinite(i.p00) else None, i.p01, i.p11]
+            name: [
+                i.angle,
+                i.bias,
+                i.p00 if isfinite(i.p00) else None,
+                i.p01,
+                i.p11,
+                i.mean.real,
+                i.mean.imag,
+                i.elapsed_s,
+            ]
             for name, i in (("thigh", self.thigh), ("shank", self.shank))
         }
 
     def restore(self, state: State) -> None:
         """Go on from a snapshot of a band with the same axes."""
         for name, i in (("thigh", self.thigh), ("shank", self.shank)):
-            i.angle, i.bias, p00, i.p01, i.p11 = state[name]
+            i.angle, i.bias, p00, i.p01, i.p11, along, across, i.elapsed_s = state[name]
+            i.mean = complex(along, across)
             i.p00 = inf if p00 is None else p00

@@ -55,6 +55,9 @@ def level_by(level: Record) -> tuple[float, float]:
         scale = 1.0 / fy
     else:
         across = sqrt(square)
+        if across < 1e-9 * abs(fy):
+            # Exactly upside down: any half turn about a horizontal axis will do.
+            fx, across = 1e-9 * abs(fy), 1e-9 * abs(fy)
         scale = atan2(across, fy) / (across + 1e-12)
     turn_x, turn_z = -fz * scale, fx * scale
     correction = turn_by(turn_x, 0.0, turn_z)
@@ -72,17 +75,17 @@ def follow_rest(level: Record, rate: FloatArray, force: FloatArray, dt_s: float,
     gain = low_pass_gain(parameters.calm_time_s, dt_s)
     if level.elapsed_s <= dt_s:
         gain = 1.0
-    rate_off, force_off, largest = 0.0, 0.0, 0.0
+    rate_off, force_off, slow = 0.0, 0.0, 0.0
     for i in range(3):
         level.calm_rate[i] += gain * (rate[i] - level.calm_rate[i])
         level.calm_force[i] += gain * (force[i] - level.calm_force[i])
         rate_off += (rate[i] - level.calm_rate[i]) ** 2
         force_off += (force[i] - level.calm_force[i]) ** 2
-        largest = max(largest, abs(level.calm_rate[i]))
+        slow += level.calm_rate[i] ** 2
     is_calm = (
         rate_off < parameters.calm_rate**2
         and force_off < parameters.calm_force**2
-        and largest < parameters.largest_bias
+        and slow < parameters.largest_bias**2
     )
     level.rest_s = level.rest_s + dt_s if is_calm else 0.0
     return bool(level.rest_s >= parameters.calm_s)
@@ -114,24 +117,50 @@ def follow_bias(
             level.rows_fast[k, i] += gain * (R[row, i] - level.rows_fast[k, i])
             level.rows[k, i] += gain * (level.rows_fast[k, i] - level.rows[k, i])
     wander = parameters.bias_wander**2 * dt_s / parameters.bias_time_s
-    for i in range(3):
-        if covariance[i, i] < parameters.start_bias_std**2:
-            covariance[i, i] += wander
-    limit = parameters.largest_bias
-    if is_at_rest:
-        noise = steady_noise(parameters.bias_std_at_rest, wander)
+    if covariance[0, 0] + covariance[1, 1] + covariance[2, 2] < 3.0 * parameters.start_bias_std**2:
         for i in range(3):
-            error = min(max(level.calm_rate[i] - bias[i], -limit), limit)
-            correct_bias(level, 1.0 * (i == 0), 1.0 * (i == 1), 1.0 * (i == 2), error, noise)
+            covariance[i, i] += wander
+    if is_at_rest:
+        take_rest(level, steady_noise(parameters.bias_std_at_rest, wander), parameters.largest_bias)
     elif level.elapsed_s > 2.0 * parameters.level_time_s:
         noise = steady_noise(parameters.bias_std_in_motion, wander)
-        for k in range(2):
-            hx, hy, hz = level.rows[k, 0], level.rows[k, 1], level.rows[k, 2]
-            turn_rate = turn_rate_x if k == 0 else turn_rate_z
-            error = -turn_rate + level.removed[k] - (hx * bias[0] + hy * bias[1] + hz * bias[2])
-            correct_bias(level, hx, hy, hz, min(max(error, -limit), limit), noise)
+        take_levelling(level, turn_rate_x, turn_rate_z, noise, parameters.largest_bias)
+    length = sqrt(bias[0] ** 2 + bias[1] ** 2 + bias[2] ** 2)
+    if length > parameters.largest_bias:
+        for i in range(3):
+            bias[i] *= parameters.largest_bias / length
+
+
+@compiled
+def take_rest(level: Record, noise: float, limit: float) -> None:
+    """Measure the whole bias, with an error of at most `limit` (rad/s); lengths are limited, so no axis is special."""
+    ex, ey, ez = (
+        level.calm_rate[0] - level.bias[0],
+        level.calm_rate[1] - level.bias[1],
+        level.calm_rate[2] - level.bias[2],
+    )
+    scale = min(1.0, limit / (sqrt(ex * ex + ey * ey + ez * ez) + 1e-12))
     for i in range(3):
-        bias[i] = min(max(bias[i], -limit), limit)
+        row = (1.0 * (i == 0), 1.0 * (i == 1), 1.0 * (i == 2))
+        target = level.calm_rate[i] - (ex, ey, ez)[i] * (1.0 - scale)
+        correct_bias(level, row[0], row[1], row[2], target - level.bias[i], noise)
+
+
+@compiled
+def take_levelling(level: Record, turn_rate_x: float, turn_rate_z: float, noise: float, limit: float) -> None:
+    """Measure the horizontal part of the bias by the rate of levelling, with an error of at most `limit` (rad/s)."""
+    rows, bias, removed = level.rows, level.bias, level.removed
+    measured_x, measured_z = removed[0] - turn_rate_x, removed[1] - turn_rate_z
+    error_x = measured_x - (rows[0, 0] * bias[0] + rows[0, 1] * bias[1] + rows[0, 2] * bias[2])
+    error_z = measured_z - (rows[1, 0] * bias[0] + rows[1, 1] * bias[1] + rows[1, 2] * bias[2])
+    scale = min(1.0, limit / (sqrt(error_x * error_x + error_z * error_z) + 1e-12))
+    measured_x -= (1.0 - scale) * error_x
+    measured_z -= (1.0 - scale) * error_z
+    error = measured_x - (rows[0, 0] * bias[0] + rows[0, 1] * bias[1] + rows[0, 2] * bias[2])
+    correct_bias(level, rows[0, 0], rows[0, 1], rows[0, 2], error, noise)
+    # The second row sees what the first has corrected: with independent noise that is the joint update.
+    error = measured_z - (rows[1, 0] * bias[0] + rows[1, 1] * bias[1] + rows[1, 2] * bias[2])
+    correct_bias(level, rows[1, 0], rows[1, 1], rows[1, 2], error, noise)
 
 
 @compiled

@@ -52,6 +52,7 @@ KNEE = np.dtype(
         ("moving_s", np.float64),  # of relative motion in the scatter
         ("angle", np.float64),  # rad, unwrapped, from the pose at which the headings were tied
         ("zero", np.float64),  # rad, the datum in terms of `angle`
+        ("standing_angle", np.float64),  # rad, of the tallest rest in terms of `angle`
         ("is_zero_set", np.float64),
         ("has_standing", np.float64),  # a rest is remembered
         ("is_standing", np.float64),  # and it was standing
