@@ -6,7 +6,7 @@ import numpy as np
 
 from schemas.rhythm import KnownRhythm, LearnedJoint, LearnedRhythm
 from schemas.vocabulary import LOWER_BODY
-from services.biomech.rhythm.learned import LearnedStrides, velocity_waveform
+from services.biomech.rhythm.learned import Learned, LearnedStrides, velocity_waveform
 from services.biomech.rhythm.trusted import TrustedRhythm
 from services.estimation.lower_body_filter import RHYTHM_CHANNELS, Row
 from services.flow.node import State
@@ -54,21 +54,7 @@ class RhythmLearning:
         if learned.strides < LEAST_STRIDES or learned.strides == self._reported:
             return None
         self._reported = learned.strides
-        joints = [
-            LearnedJoint(degree_of_freedom=name, cosine=cosine.tolist(), sine=sine.tolist(), spread=spread.tolist())
-            for name, is_seen, cosine, sine, spread in zip(
-                RHYTHM_CHANNELS, self._valid, learned.cosine, learned.sine, learned.spread, strict=True
-            )
-            if is_seen
-        ]
-        return LearnedRhythm(
-            captured_ns=self._last_ns,
-            frequency=learned.frequency,
-            frequency_spread=learned.frequency_spread,
-            strides=learned.strides,
-            quality=learned.quality,
-            joints=joints,
-        )
+        return described(learned, self._valid, self._last_ns)
 
     def snapshot(self) -> State:
         """Everything that changes."""
@@ -87,6 +73,23 @@ class RhythmLearning:
         self._last_ns = state["last_ns"]
         self._was_locked = state["was_locked"]
         self._reported = state["reported"]
+
+
+def described(learned: Learned, seen: Sequence[bool], captured_ns: int) -> LearnedRhythm:
+    """What was learned of RHYTHM_CHANNELS as a message, with the joints that were seen. Needs one stride."""
+    rows = zip(RHYTHM_CHANNELS, seen, learned.cosine, learned.sine, learned.spread, strict=True)
+    return LearnedRhythm(
+        captured_ns=captured_ns,
+        frequency=learned.frequency,
+        frequency_spread=learned.frequency_spread,
+        strides=learned.strides,
+        quality=learned.quality,
+        joints=[
+            LearnedJoint(degree_of_freedom=name, cosine=cosine.tolist(), sine=sine.tolist(), spread=spread.tolist())
+            for name, is_seen, cosine, sine, spread in rows
+            if is_seen
+        ],
+    )
 
 
 def start_rhythm(rhythm: TrustedRhythm, known_rhythms: Sequence[KnownRhythm]) -> None:

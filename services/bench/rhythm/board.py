@@ -1,7 +1,8 @@
 """Scoreboard of the rhythm estimators: random periodic velocities, synthetic gait, a treadmill, cost per sample.
 
-Each figure of the trusted rhythm stands beside that of the published oscillator on the same motions. Seeds are
-20000-20999 for random motions and from 1000 on for gait; parameters were chosen on other seeds.
+Each figure of the trusted rhythm stands beside that of the published oscillator on the same motions; where a rhythm is
+known from before, beside that of the cold start. Seeds are 20000-20999 for random motions and from 1000 on for gait and
+people; parameters were chosen on other seeds.
 """
 
 import time
@@ -10,11 +11,13 @@ from concurrent.futures import ProcessPoolExecutor
 from functools import partial
 from multiprocessing import get_context
 from pathlib import Path
+from typing import Protocol, TypeVar
 
 import numpy as np
 from numpy.typing import NDArray
 from rich.progress import Progress
 
+from services.bench.rhythm.distances import person_ratio, person_rows, recorded_rows, side_rows
 from services.bench.rhythm.figures import (
     ALL_RANDOM,
     METRONOME,
@@ -30,7 +33,9 @@ from services.bench.rhythm.figures import (
 from services.bench.rhythm.motions import INTERVAL_S, Motion, Scenario, gait_motion, random_motion
 from services.bench.rhythm.scores import RhythmScore, score_gait, score_random
 from services.bench.rhythm.stride_shapes import StrideShapes, load_stride_shapes
+from services.bench.rhythm.ten_metres import score_second_trial, ten_metre_rows
 from services.bench.rhythm.treadmill import load_shank_rates, score_cadence
+from services.bench.rhythm.warm import score_person, warm_rows
 from services.bench.scoreboard import Row, Scoreboard, at_least, at_most, informative
 from services.biomech.rhythm.joukov import JoukovOscillator
 from services.biomech.rhythm.parameters import JoukovParameters
@@ -40,12 +45,21 @@ from services.ingest.errors import MissingFile
 PROCESSES = 2
 RANDOM_SEED, GAIT_SEED = 20000, 1000
 RANDOM_MOTIONS, GAIT_MOTIONS, METRONOME_RUNS = 1000, 100, 6
+TEN_METRE_WALKS = 20
 STRONG_RMS = 0.5  # rad/s: signal to noise of 0 dB
 JOINTS = {"1 knee": (0,), "both knees": (0, 1), "4 joints": (0, 1, 2, 3)}
 RANDOM_COEFFICIENT_RATE = 0.2  # 1/s, the published simulation's
 GAIT_RATES = JoukovParameters()
 
 Score = Callable[[str, Callable[[int], Pair], Sequence[int]], list[Pair]]
+Scored = TypeVar("Scored")
+
+
+class Follow(Protocol):
+    """Work through seeds in other processes while a bar is shown."""
+
+    def __call__(self, title: str, score: Callable[[int], Scored], seeds: Sequence[int]) -> list[Scored]:
+        """The scores in the order of the seeds."""
 
 
 def run(json_path: Path | None = None, motions: int = RANDOM_MOTIONS) -> Scoreboard:
@@ -57,11 +71,21 @@ def run(json_path: Path | None = None, motions: int = RANDOM_MOTIONS) -> Scorebo
     """
     walks = min(GAIT_MOTIONS, max(10, motions // 10))
     with Progress() as progress, ProcessPoolExecutor(PROCESSES, mp_context=get_context("spawn")) as pool:
-        score = partial(_score_all, pool, progress)
+        score = partial(_follow_all, pool, progress)
         rows = random_rows(score("random motions", score_random_seed, range(RANDOM_SEED, RANDOM_SEED + motions)))
         rows += _or_skipped("gait", lambda: gait_rows(score, load_stride_shapes(), walks))
+        follow = partial(_follow_all, pool, progress)
+        rows += _or_skipped("known rhythm", lambda: known_rows(follow, load_stride_shapes(), walks))
+        trials = range(GAIT_SEED, GAIT_SEED + min(TEN_METRE_WALKS, walks))
+        rows += ten_metre_rows(follow("10 m walks", score_second_trial, trials))
+        rows += side_rows(follow)
+        rows += _or_skipped("distances", lambda: distance_rows(follow, load_stride_shapes(), walks))
     rows += _or_skipped("treadmill", treadmill_rows) + cost_rows()
-    scoreboard = Scoreboard("rhythm", rows, note="baseline: the published oscillator on the same motions")
+    scoreboard = Scoreboard(
+        "rhythm",
+        rows,
+        note="baseline: the published oscillator on the same motions; known rhythm and 10 m: the cold start",
+    )
     if json_path is not None:
         scoreboard.write_json(json_path)
     return scoreboard
@@ -74,9 +98,9 @@ def _or_skipped(name: str, measure: Callable[[], list[Row]]) -> list[Row]:
         return [Row(f"{name}: skipped", None, "", str(missing), None, None)]
 
 
-def _score_all(
-    pool: ProcessPoolExecutor, progress: Progress, title: str, score: Callable[[int], Pair], seeds: Sequence[int]
-) -> list[Pair]:
+def _follow_all(
+    pool: ProcessPoolExecutor, progress: Progress, title: str, score: Callable[[int], Scored], seeds: Sequence[int]
+) -> list[Scored]:
     return list(progress.track(pool.map(score, seeds, chunksize=2), total=len(seeds), description=title))
 
 
@@ -132,6 +156,22 @@ def gait_rows(score: Score, shapes: StrideShapes, walks: int) -> list[Row]:
         rows += _rows(f"stop, {name}", STOPPED_GAIT, play("stop", name))
         rows += _rows(f"speed, {name}", paced, play("speed", name))
     return rows + _rows("metronome, both knees", METRONOME, play("metro", "both knees", METRONOME_RUNS, 180.0))
+
+
+def known_rows(follow: Follow, shapes: StrideShapes, people: int) -> list[Row]:
+    """Short walks that start from a rhythm known before, right or wrong."""
+    rows = []
+    for name, joints in JOINTS.items():
+        score = partial(score_person, shapes=shapes, joints=joints)
+        starts = follow(f"known rhythm, {name}", score, range(GAIT_SEED, GAIT_SEED + people))
+        rows += warm_rows(name, starts, judged=len(joints) > 1)
+    return rows
+
+
+def distance_rows(follow: Follow, shapes: StrideShapes, people: int) -> list[Row]:
+    """Distances of learned strides between people, and of the recorded walk."""
+    seeds = range(GAIT_SEED, GAIT_SEED + people)
+    return person_rows(follow("distance of people", partial(person_ratio, shapes=shapes), seeds)) + recorded_rows()
 
 
 def _rows(case: str, wanted: Sequence[Wanted], pairs: list[Pair]) -> list[Row]:

@@ -130,7 +130,9 @@ class TrustedParameters:
 
     # Recognition of a known waveform
     recall_periods: float = 0.75
-    """Periods of motion compared with the known waveform. [B]"""
+    """Periods of motion compared with the known waveform, from one or two joints. [B]"""
+    recall_joint_periods: float = 2.0
+    """Periods times joints that are enough: from four joints half a period. [B]"""
     recall_range: float = 0.25
     """Frequencies tried: within this share of the known one. The edges are not believed. [B]"""
     recall_share: float = 0.8

@@ -1,11 +1,11 @@
 """Recognise a waveform that is known already: a lock within a stride instead of two and a half.
 
-The last `recall_periods` of the motion are compared with the known waveform g at every phase W and at frequencies
-around the known one. With the inner product <u, g> = sum over cells and channels of w_c u_c g_c, w_c one over the
-power of the known channel, and a free common amplitude, the explained share is r = <u, g>^2 / (<u, u> <g, g>).
-A match is believed when it is good, unlike every other phase, and moves on as it should from search to search. The
-lock that follows is provisional: watched more narrowly, and the correlation overrules it at the instant at which it
-would have locked by itself.
+The last `recall_periods` of the motion, or less from many joints, are compared with the known waveform g at every
+phase W and at frequencies around the known one. With the inner product <u, g> = sum over cells and channels of
+w_c u_c g_c, w_c one over the power of the known channel, and a free common amplitude, the explained share is
+r = <u, g>^2 / (<u, u> <g, g>). A match is believed when it is good, unlike every other phase, and moves on as it should
+from search to search. The lock that follows is provisional: watched more narrowly, and the correlation overrules it at
+the instant at which it would have locked by itself.
 """
 
 from math import cos, pi, sin
@@ -31,11 +31,12 @@ def find_match(memory: Memory, bench: Bench, dt_s: float) -> tuple[float, float,
     explains nearly as much.
     """
     loop, parameters = memory.loop[0], bench.parameters[0]
-    weights, energy = _prepare(memory.known, bench.turns, round(PHASES * parameters.recall_periods))
+    periods = window_periods(memory.channels.size, parameters)
+    weights, energy = _prepare(memory.known, bench.turns, round(PHASES * periods))
     shares, fits = np.zeros((FREQUENCIES, PHASES)), np.zeros((FREQUENCIES, PHASES))
     for j in range(FREQUENCIES):
         factor = 1.0 + parameters.recall_range * (2.0 * j / (FREQUENCIES - 1) - 1.0)
-        _compare(memory, bench, factor * loop.known_frequency, dt_s, weights, energy, shares[j], fits[j])
+        _compare(memory, bench, factor * loop.known_frequency, periods, dt_s, weights, energy, shares[j], fits[j])
     best = int(np.argmax(shares))
     at, phase = best // PHASES, best % PHASES
     share = shares[at, phase]
@@ -51,6 +52,12 @@ def find_match(memory: Memory, bench: Bench, dt_s: float) -> tuple[float, float,
     before, after = shares[at, (phase - 1) % PHASES], shares[at, (phase + 1) % PHASES]
     exact = turn * (phase + _vertex(before, share, after))
     return frequency, exact + frequency * loop.grid_s, fits[at, phase], share
+
+
+@compiled
+def window_periods(channels: int, parameters: Record) -> float:
+    """Periods of motion that are compared: many joints tell a phase apart sooner than one."""
+    return float(min(parameters.recall_periods, parameters.recall_joint_periods / channels))
 
 
 @compiled
@@ -81,6 +88,7 @@ def _compare(
     memory: Memory,
     bench: Bench,
     frequency: float,
+    periods: float,
     dt_s: float,
     weights: FloatArray,
     energy: FloatArray,
@@ -88,11 +96,10 @@ def _compare(
     fits: FloatArray,
 ) -> None:
     """Explained share and amplitude ratio at each phase for one frequency; zeros when the motion is too short."""
-    loop, parameters, known = memory.loop[0], bench.parameters[0], memory.known
-    interval_s = parameters.grid_interval_s
+    loop, known, interval_s = memory.loop[0], memory.known, bench.parameters[0].grid_interval_s
     history = memory.raw_history.shape[1] // 2
     newest = history + (int(loop.grid_count) - 1) % history
-    count = round(parameters.recall_periods * 2.0 * pi / frequency / interval_s)
+    count = round(periods * 2.0 * pi / frequency / interval_s)
     if count > min(history, int(loop.elapsed_s / interval_s)):
         return
     power = 0.0
