@@ -44,6 +44,17 @@ def test_contacts_and_toe_offs_by_the_feet_against_reviewed_ones():
         assert found["SD"] < 40.0
 
 
+def test_a_sensor_on_the_back_marks_the_turning_strides_of_feet():
+    try:
+        found = through_chain("voisard_1_1", "ekf").found
+    except SourceError as missing:
+        pytest.skip(str(missing))
+    turning = [stride for stride in found.strides if stride.turning]
+    # The turn is known to last from 13.16 to 14.74 s.
+    assert 2 <= len(turning) <= 5
+    assert all(stride.start_ns < 14.74e9 and stride.end_ns > 13.16e9 for stride in turning)
+
+
 def test_the_lower_back_alone_without_standing_against_insoles():
     try:
         walks = list(recorded_walks("Test5"))

@@ -19,6 +19,7 @@ from services.bench.gait.lower_back_walks import lower_back_rows
 from services.bench.gait.shoe_walk import shoe_rows
 from services.bench.gait.stride_scores import Matched, match, together
 from services.bench.gait.strides import ESTIMATOR, through_chain
+from services.bench.gait.stroke_sensors import stroke_sensor_rows
 from services.bench.gait.voisard import voisard_rows
 from services.bench.scoreboard import Row, Scoreboard, at_least, at_most, informative
 from services.ingest.data import MANIFESTS
@@ -49,6 +50,7 @@ SUBJECTS: dict[str, Callable[[], list[Row]]] = {
     "voisard": voisard_rows,
     "gaitmap": shoe_rows,
     "mobgap": lower_back_rows,
+    "stroke": stroke_sensor_rows,
 }
 NOTE = f"""shanks: the constants were chosen on {TUNED}, the instants that they are added to on both
 feet and back: chosen on voisard's adult 1, the stroke survivor and, for the back, the neura walk; all others held out
@@ -56,7 +58,8 @@ baseline: mobgap's McCamley and Ullrich, which are told where the walking is; bl
 
 
 def run(json_path: Path | None = None, subject: str = "all") -> Scoreboard:
-    """Score the events of the subjects S01 and S05 (`zju` for both), of `voisard`, `gaitmap`, `mobgap`, or of all."""
+    """Score the events of the subjects S01 and S05 (`zju` for both), of `voisard`, `gaitmap`, `mobgap`,
+    of the `stroke` survivor, or of all."""
     chosen = {"all": list(SUBJECTS), "zju": [TUNED, SCORED]}.get(subject, [subject])
     if not set(chosen) <= set(SUBJECTS):
         raise ValueError(f"no events of {subject!r}: choose zju, {', '.join(SUBJECTS)} or all")

@@ -57,11 +57,11 @@ def test_nothing_found_is_a_missed_row():
 
 
 def test_an_unknown_subject_is_refused():
-    with pytest.raises(ValueError, match="choose zju, S01, S05, voisard, gaitmap, mobgap or all"):
+    with pytest.raises(ValueError, match="choose zju, S01, S05, voisard, gaitmap, mobgap, stroke or all"):
         run(None, "S99")
 
 
 def test_without_the_recordings_the_table_says_so(monkeypatch):
     monkeypatch.setattr("services.ingest.data.data_folders", list)
-    for subject in ("S05", "voisard", "gaitmap", "mobgap"):
+    for subject in ("S05", "voisard", "gaitmap", "mobgap", "stroke"):
         assert [(row.value, row.met) for row in run(None, subject).rows] == [(None, None)]
