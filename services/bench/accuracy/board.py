@@ -2,7 +2,7 @@
 
 from pathlib import Path
 
-from services.bench.accuracy import knee, steps, walk
+from services.bench.accuracy import drift, knee, steps, walk
 from services.bench.scoreboard import Scoreboard
 
 
@@ -14,5 +14,7 @@ def run(json_path: Path | None = None, subject: str = "neura") -> Scoreboard:
         return knee.run(subject, json_path)
     if subject == steps.SUBJECT:
         return steps.run(json_path)
-    known = ", ".join([*walk.RECORDINGS, *knee.KNEES, steps.SUBJECT])
+    if subject == drift.SUBJECT:
+        return drift.run(json_path)
+    known = ", ".join([*walk.RECORDINGS, *knee.KNEES, steps.SUBJECT, drift.SUBJECT])
     raise ValueError(f"accuracy is measured on {known}, not on {subject!r}")
