@@ -154,6 +154,8 @@ class Marks:
 
     def runs(self, ticks: Sequence[Tick]) -> list[tuple[list[StandingMark], Sequence[Tick]]]:
         """The ticks in runs, each with the marks that count from its first tick on. The marks are handed out once."""
+        if not self._given:
+            return [([], ticks)] if ticks else []
         runs = parted(ticks, self._given)
         for marks, _ in runs:
             self._given = [mark for mark in self._given if mark not in marks]

@@ -181,7 +181,7 @@ def change(message: Message, sensor: str, **fields) -> Message:
     i = sensors().index(sensor)
     values = samples[i].model_dump() | fields
     samples[i] = SensorSamples.model_construct(**values)
-    return replace(message, payload=ImuBatch.model_construct(sensors=samples))
+    return replace(message, payload=ImuBatch.model_construct(sensors=samples, marks=message.payload.marks))
 
 
 @pytest.mark.parametrize("bad", [math.nan, math.inf, -math.inf])
