@@ -47,6 +47,13 @@ def joukov(json_path: Path | None = None, *subject: str, report: Path | None = N
     return run(json_path, int(numbers[0]) if numbers else MOTIONS, parts, report)
 
 
+def loss(json_path: Path | None = None, *subject: str) -> Scoreboard:
+    """What lost samples cost: bursts on the radio, sensors and receivers silent in mid-walk."""
+    from services.bench.performance.loss import run
+
+    return run(json_path, *subject)
+
+
 def recovery(json_path: Path | None = None) -> Scoreboard:
     """What a kill of the archive costs, before and after its restart, and what a flush costs."""
     from services.bench.performance.recovery import run
@@ -90,6 +97,7 @@ SCOREBOARDS: dict[str, Callable[..., Scoreboard]] = {
     "events": events,
     "joukov": joukov,
     "knee": knee,
+    "loss": loss,
     "recovery": recovery,
     "rhythm": rhythm,
     "step": step,

@@ -148,7 +148,7 @@ class AxisSearch:
         for leg in LEGS:
             speaking = np.any(fresh[-self.parameters.silent_ticks :], axis=0).tolist()
             worn = {s: self._turning(s, samples, fresh) for s in self._wearing(*leg) if speaking[s]}
-            signs = self._signs_by_walk({self.sensors[s].segment: found for s, found in worn.items()}, *leg)
+            signs = self._signs_by_walk({self.sensors[s].segment: found for s, found in worn.items()}, fresh, *leg)
             for s, (rates, axis, ratio, moving) in worn.items():
                 placed = placed_right(self.sensors[s], self.up(s))
                 sign = signs.get(self.sensors[s].segment, 1.0)
@@ -169,7 +169,12 @@ class AxisSearch:
         return (rates, *principal_direction(rates, self.up(s), self.parameters.moving_rate))
 
     def _signs_by_walk(
-        self, worn: dict[Segment, tuple[Array, Array, float, int]], thigh: Segment, shank: Segment, foot: Segment
+        self,
+        worn: dict[Segment, tuple[Array, Array, float, int]],
+        fresh: NDArray[np.bool_],
+        thigh: Segment,
+        shank: Segment,
+        foot: Segment,
     ) -> dict[Segment, float]:
         if shank not in worn:
             return self._foot_sign(worn, foot)
@@ -177,10 +182,20 @@ class AxisSearch:
         shank_rate = worn[shank][0] @ worn[shank][1]
         thigh_rate = worn[thigh][0] @ worn[thigh][1] if thigh in worn else None
         if thigh_rate is not None:
-            length = min(len(thigh_rate), len(shank_rate))
-            thigh_rate, shank_rate = thigh_rate[:length], shank_rate[:length]
+            thigh_rate, shank_rate = self._side_by_side(thigh_rate, shank_rate, fresh, thigh, shank)
         signs = walking_signs(thigh_rate, shank_rate, rate_hz)
         return dict(zip((thigh, shank), signs, strict=True))
+
+    def _side_by_side(
+        self, thigh_rate: Array, shank_rate: Array, fresh: NDArray[np.bool_], thigh: Segment, shank: Segment
+    ) -> tuple[Array, Array]:
+        """Rates of both at the same instants. Sensors that share no clock have none; their samples are counted off."""
+        of = [fresh[:, next(s for s in self._wearing(segment))] for segment in (thigh, shank)]
+        both = of[0] & of[1]
+        length = min(len(thigh_rate), len(shank_rate))
+        if both.sum() > length // 2:
+            return thigh_rate[both[of[0]]], shank_rate[both[of[1]]]
+        return thigh_rate[:length], shank_rate[:length]
 
     def _foot_sign(self, worn: dict[Segment, tuple[Array, Array, float, int]], foot: Segment) -> dict[Segment, float]:
         if foot not in worn:

@@ -8,14 +8,16 @@ from numpy.typing import NDArray
 
 from schemas.session import SensorDescription, SessionDescription
 from schemas.vocabulary import LOWER_BODY, Segment
-from services.biomech.companions import CompanionModel
 from services.biomech.lower_body import PARENT_SEGMENT, SEGMENTS, LowerBodyModel, SensorMount, segment_of
 from services.biomech.lower_body_ekf import LowerBodyEkf
-from services.biomech.rhythm.reading import RhythmEstimator, RhythmReading
+from services.biomech.rhythm.reading import RhythmReading
 from services.biomech.rhythm.trusted import TrustedRhythm
 from services.estimation.alignment import Alignment
-from services.estimation.parameters import FilterParameters, UnmodelledErrors
+from services.estimation.coasting import Coasting
+from services.estimation.drivers import companions_of, driver_of
+from services.estimation.parameters import FilterParameters
 from services.estimation.samples import Tick
+from services.estimation.unmodelled import unmodelled_deviations
 from services.flow.node import State, pack_array, unpack_array
 
 Array = NDArray[np.float64]
@@ -73,16 +75,19 @@ class LowerBodyFilter:
             calibrated.gyro_bias,
             parameters.measurement,
             parameters.noise,
-            _companions_of(description.estimator, parameters, rate_hz),
+            companions_of(description.estimator, parameters, RHYTHM_CHANNELS, rate_hz),
         )
         self._rhythm = TrustedRhythm(len(RHYTHM_CHANNELS), parameters.rhythm)
         self._rhythm_joints = np.array([self.model.names.index(name) for name in RHYTHM_CHANNELS])
-        self._driver, self._driver_joints = _driver_of(description.estimator, self.model, self._rhythm)
+        self._driver, self._driver_joints = driver_of(description.estimator, self.model, self._rhythm, RHYTHM_CHANNELS)
         self._jerk = np.zeros(len(self.model.dofs))
+        coasts = parameters.coasts and description.estimator == "rhythmic_ekf"
+        self._coasting = Coasting(self.model, self._segments, parameters.coasting) if coasts else None
+        self._followed: frozenset[Segment] = frozenset()
         self._starts_moving = calibrated.from_walking
         self._may_diverge = parameters.measurement.gyro_sees_position or parameters.measurement.accel_sees_motion
         self._ahead = _ahead(parameters.sample_delay / rate_hz)
-        self._unmodelled = _unmodelled(self.model, parameters.unmodelled)
+        self._unmodelled = unmodelled_deviations(self.model, parameters.unmodelled)
         self._last_ns: int | None = None
         self._heard_ns: list[int] = []
         self.unseen: frozenset[Segment] = frozenset(SEGMENTS)
@@ -119,11 +124,12 @@ class LowerBodyFilter:
     def _see(self, unseen: frozenset[Segment], now_ns: int) -> None:
         """What changes when a sensor falls silent or comes back."""
         for segment in sorted(self.unseen - unseen):
-            self.ekf.loosen(self.model.joints_of(segment))
+            if segment not in self._followed:
+                self.ekf.loosen(self.model.joints_of(segment))
             if self._last_ns is not None:
                 self._returned_ns[segment] = now_ns
         self.unseen = unseen
-        self._rest = self._rest_without(unseen)
+        self._rest = self._rest_without(unseen - self._followed)
 
     def _judge(self, now_ns: int) -> None:
         """Which degrees of freedom are valid: seen, and not just come back."""
@@ -148,7 +154,16 @@ class LowerBodyFilter:
         return [segment for segment in SEGMENTS if segment not in missing]
 
     def fuse(self, tick: Tick) -> Row:
-        """Advance to the tick and take its samples in."""
+        """Advance to the tick and take its samples in; through a gap of everyone in steps, where strides tell how."""
+        if self._coasting is not None and self._last_ns is not None:
+            first_ns, steps = self._last_ns, self._coasting.steps(self._last_ns, tick)
+            for step in steps:
+                self._advance(step, self._coasting)
+            if steps and not self._coasting.realign(self.ekf, tick, (tick.captured_ns - first_ns) * 1e-9):
+                self.ekf.settle()
+        return self._row(tick.captured_ns, self._advance(tick, self._coasting))
+
+    def _advance(self, tick: Tick, coasting: Coasting | None) -> RhythmReading:
         dt_s = 0.0 if self._last_ns is None else (tick.captured_ns - self._last_ns) / 1e9
         if dt_s > self.parameters.longest_step_s:
             self.ekf.settle()
@@ -161,12 +176,26 @@ class LowerBodyFilter:
             self._see(unseen, tick.captured_ns)
         self._judge(tick.captured_ns)
         step_s = dt_s if dt_s <= self.parameters.longest_step_s else 0.0
-        self.ekf.advance(step_s, tick.samples, tick.fresh & self._aligned, self._jerk, self._rest)
+        filled = tick if coasting is None else self._follow(coasting, tick, step_s)
+        self.ekf.advance(step_s, filled.samples, filled.fresh & self._aligned, self._jerk, self._rest)
         if self._may_diverge and not self.ekf.is_sound():
             self._start_over(tick.captured_ns)
+        if coasting is not None:
+            coasting.lead(self.ekf, step_s)
         reading = self._follow_rhythm(dt_s)
+        if coasting is not None:
+            for segment in coasting.learn(reading, dt_s, tick, self.ekf.estimate, self._missing):
+                self.ekf.loosen(self.model.joints_of(segment))
         self._last_ns = tick.captured_ns
-        return self._row(tick.captured_ns, reading)
+        return reading
+
+    def _follow(self, coasting: Coasting, tick: Tick, dt_s: float) -> Tick:
+        """The tick with stand-ins for silent sensors; their joints are not drawn to zero."""
+        filled = coasting.stand_in(tick, self._heard_ns, self._aligned, dt_s)
+        if coasting.followed != self._followed:
+            self._followed = coasting.followed
+            self._rest = self._rest_without(self.unseen - self._followed)
+        return filled
 
     def _start_over(self, now_ns: int) -> None:
         """The estimate is lost: begin again from upright, in doubt like after a gap."""
@@ -210,6 +239,8 @@ class LowerBodyFilter:
 
     def _row(self, captured_ns: int, reading: RhythmReading) -> Row:
         deviations = np.hypot(self.ekf.deviations(), self._unmodelled)
+        if self._coasting is not None:
+            deviations[0] = np.hypot(deviations[0], self._coasting.deviation)
         values = np.concatenate([self._ahead @ self.ekf.estimate, deviations])
         if len(self.model.soft) == 0 or self.model.first_rotation > 0:
             pick = self.model.reported
@@ -230,6 +261,7 @@ class LowerBodyFilter:
             "unseen": sorted(self.unseen),
             "returned_ns": {segment.value: ns for segment, ns in sorted(self._returned_ns.items())},
             "rhythm": self._rhythm.snapshot(),
+            "coasting": None if self._coasting is None else self._coasting.snapshot(),
             "driver": self._driver.snapshot() if self._driver is not None and driven else None,
         }
 
@@ -244,7 +276,11 @@ class LowerBodyFilter:
         self.unseen = frozenset(Segment(name) for name in state["unseen"])
         self._returned_ns = {Segment(name): ns for name, ns in state["returned_ns"].items()}
         self._missing = self.unseen | frozenset(self._returned_ns)
-        self.valid, self._rest = self._valid_without(self._missing), self._rest_without(self.unseen)
+        if self._coasting is not None:
+            self._coasting.restore(state["coasting"])
+            self._followed = self._coasting.followed
+        self.valid = self._valid_without(self._missing)
+        self._rest = self._rest_without(self.unseen - self._followed)
         self.observed = self._observed_without(self._missing)
         self._rhythm.restore(state["rhythm"])
         if self._driver is not None and state["driver"] is not None:
@@ -256,47 +292,6 @@ def _ahead(delay_s: float) -> Array:
     return np.array([[1.0, delay_s, 0.5 * delay_s**2], [0.0, 1.0, delay_s], [0.0, 0.0, 1.0]])
 
 
-def _unmodelled(model: LowerBodyModel, errors: UnmodelledErrors) -> Array:
-    """(2, n) rad and rad/s that no covariance knows of, of every degree of freedom of the model."""
-    tissue = {"pelvis": errors.soft_tissue_pelvis, "thigh": errors.soft_tissue_thigh, "shank": errors.soft_tissue_shank}
-    gravity = {"pelvis": 0.0, "thigh": errors.gravity_thigh, "shank": errors.gravity_shank}
-    result = np.zeros((2, len(model.dofs)))
-    for segment in SEGMENTS:
-        kinds = {part.partition("_")[0] for part in (segment, PARENT_SEGMENT.get(segment, segment))}
-        moved = sum(tissue[kind] ** 2 for kind in kinds)
-        result[:, model.joints_of(segment)] = [
-            [np.sqrt(moved + sum(gravity[kind] ** 2 for kind in kinds))],
-            [errors.soft_tissue_rate * np.sqrt(moved)],
-        ]
-    return result
-
-
 def _mount(sensor: SensorDescription, R_segment_from_sensor: Array) -> SensorMount:
     at = sensor.position_in_segment
     return SensorMount(sensor.segment, R_segment_from_sensor, None if at is None else (at[0], at[1], at[2]))
-
-
-def _companions_of(estimator: str, parameters: FilterParameters, rate_hz: float) -> CompanionModel:
-    """The rhythm drives a state beside the plain filter's; the published oscillator drives the filter itself."""
-    if estimator != "rhythmic_ekf":
-        return CompanionModel()
-    shares = (1.0, parameters.calm_share) if parameters.calm_share < 1.0 else (1.0,)
-    return CompanionModel(shares, RHYTHM_CHANNELS, parameters.judges, parameters.gate, rate_hz)
-
-
-def _driver_of(
-    estimator: str, model: LowerBodyModel, rhythm: RhythmEstimator
-) -> tuple[RhythmEstimator | None, list[int]]:
-    """Whose jerk the filter is fed, and for which joints."""
-    if estimator == "ekf":
-        return None, []
-    if estimator == "rhythmic_ekf":
-        return rhythm, [model.names.index(name) for name in RHYTHM_CHANNELS]
-    if estimator in ("rhythmic_ekf_joukov", "joukov_published"):
-        from services.biomech.rhythm.joukov import JoukovOscillator
-
-        # The right knee comes first: its error drives the phase; every joint has its own harmonics.
-        first = model.names.index("knee_flexion_right")
-        joints = [first] + [j for j in range(model.first_rotation, len(model.dofs)) if j != first]
-        return JoukovOscillator(len(joints)), joints
-    raise ValueError(f"estimation has no estimator {estimator!r}")

@@ -108,9 +108,31 @@ class UnmodelledErrors:
     soft_tissue_thigh: float = 0.049
     soft_tissue_shank: float = 0.021
     soft_tissue_rate: float = 7.0  # rad/s: it moves once and twice a stride, so its velocity is its angle times this
-    gravity_thigh: float = 0.005  # accelerations of a walking thigh, read as gravity
-    gravity_shank: float = 0.022  # the same of a shank, chosen on synthetic walks without soft tissue; those of the
-    # pelvis are covered by the filter's own covariance
+    gravity_thigh: float = 0.005  # accelerations of a walking thigh, read as gravity, beyond the filter's covariance
+    gravity_shank: float = 0.022  # the same of a shank; both chosen on synthetic walks. They grow with the speed
+
+
+@dataclass(frozen=True)
+class CoastingParameters:
+    """How silent sensors are stood in for. Chosen on synthetic walks of seeds 103 to 106, 50 and 100 Hz."""
+
+    strides: float = 4.0  # strides over which samples are averaged
+    after_s: float = 0.105  # s without a sample from which on a sensor is stood in for; sooner, the filter's own
+    # prediction, which the next sample corrects, is better
+    longest_s: float = 5.0  # s without a sample after which it is no longer
+    lead_s: float = 0.2  # s in which joints are led to where they were
+    fade_s: float = 2.4  # s in which a wrong position is forgotten: the tilt time constant of the filter
+    surprise_s: float = 0.1  # s over which surprise is averaged
+    most_surprise: float = 3.0  # variances of the gyroscopes of those who speak, beyond which nobody is stood in for
+    most_surprise_on_return: float = 25.0  # the same of the sensor itself, beyond which the joint begins anew
+    most_surprise_after_gap: float = 0.5  # the same of all after a gap of everyone, at the phase that suits them best;
+    # who walks on is below 0.05
+    least_rate_std: float = 0.3  # rad/s, less is no surprise
+    least_force_std: float = 1.0  # m/s^2, the same
+    frequency_change: float = 0.04  # relative, by which a walk may have been faster while nobody was heard
+    step_s: float = 0.01  # s, steps through a gap of everyone
+    buffer_s: float = 4.0  # s that are kept until a rhythm is found in them; two strides of a slow walk
+    buffer_every_s: float = 0.02  # s
 
 
 @dataclass(frozen=True)
@@ -135,6 +157,8 @@ class FilterParameters:
     judges: Literal["segment", "leg", "body"] = "segment"  # whose gyroscopes decide whether a joint follows the rhythm
     unmodelled: UnmodelledErrors = field(default_factory=UnmodelledErrors)
     calm_share: float = 0.1  # of the process noise that a third state has once the rhythm is learned; 1 runs none
+    coasts: bool = True  # `rhythmic_ekf` goes on without a silent sensor as the strides before tell
+    coasting: CoastingParameters = field(default_factory=CoastingParameters)
     longest_jerk: float = 2000.0  # rad/s^3, bound on what a rhythm may feed; knee jerk in walking stays below 1500
 
 
