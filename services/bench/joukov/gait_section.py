@@ -31,9 +31,9 @@ def event_rows(subject: str) -> list[Row]:
 def strides_section(rows: Sequence[Row]) -> Section:
     """The stroke survivor's strides."""
     paragraphs = [
-        "A stroke survivor on a treadmill (moving_reality pp11), sensors on both shanks, through the whole live chain: "
-        "strides of each side beside the 113 and 112 swings that a threshold on the shank's rate counts by eye in the "
-        "recording, which has no other truth. Baseline: the plain EKF in the same chain. Default S.",
+        "A stroke survivor on a treadmill (moving_reality pp11) through the whole live chain: strides of each side "
+        "beside 113 and 112 peaks of the shanks' sagittal rate above 1.2 rad/s; the recording has no other truth. "
+        "Baseline: the plain EKF in the same chain. Default S.",
     ]
     return Section("Strides of a stroke survivor", paragraphs, rows)
 

@@ -40,7 +40,7 @@ from services.bench.joukov.marching_tables import (
 )
 from services.bench.joukov.published_tables import error_table, prediction_table
 from services.bench.joukov.regions import BOTTOM, QUANTITIES, QUARTER, REGIONS, TOP, WHOLE
-from services.bench.joukov.sections import Finding, Section, change, power
+from services.bench.joukov.sections import Finding, Section, change, power, up_to
 from services.bench.scoreboard import Row, at_least, at_most, informative
 
 MODEL_WORDS = {"gravity": "accelerometers see gravity alone", "published": "published measurement model"}
@@ -80,7 +80,7 @@ def _findings(trials: Trials, tuning: Tuning) -> list[Finding]:
         for e in (OURS, LITERAL):
             ratios = {at: float(mean_ratio(people, Setting("gravity", e, S))[q]) for at, S in named.items()}
             here.append(f"{TITLES[e]} " + ", ".join(f"{change(ratio)} at {at}" for at, ratio in ratios.items()))
-            where.append(f"{TITLES[e]}: up to {power(largest_S(curve(people, e)[:, q], wanted))}")
+            where.append(f"{TITLES[e]}: {up_to(largest_S(curve(people, e)[:, q], wanted))}")
         found.append(Finding(f"marching, {QUANTITIES[q]} {change(wanted)}", "; ".join(here), "; ".join(where)))
     beat = {
         e: max(abs(frequency_error(s[Setting("gravity", e, tuning.star)])) for s in trials[BEAT].values())

@@ -2,11 +2,12 @@
 
 import numpy as np
 
-from services.bench.joukov.marching import LITERAL, OURS, PLAIN, Setting, Tuning
+from services.bench.joukov.marching import LITERAL, OURS, PLAIN, TITLES, Setting, Tuning
+from services.bench.joukov.marching_tables import PUBLISHED_ACCELERATION, PUBLISHED_VELOCITY, largest_S
 from services.bench.joukov.neura import CUTOFF_HZ, GRID, NeuraStudy
 from services.bench.joukov.published_tables import error_table, prediction_table
 from services.bench.joukov.regions import BOTTOM, QUANTITIES, TOP, WHOLE
-from services.bench.joukov.sections import COLOURS, Section
+from services.bench.joukov.sections import COLOURS, Finding, Section, change, up_to
 from services.bench.line_chart import line_chart
 from services.bench.scoreboard import Row, informative
 
@@ -31,7 +32,24 @@ def neura_section(study: NeuraStudy, tuning: Tuning) -> Section:
         f"{100 * study.locked:.0f} % of the scored time. One person gives no paired test. Without a reviewed phase, "
         "segmentation is not scored here.",
     ]
-    return Section(TITLE, paragraphs, _rows(study, tuning), tables, {"neura_curve": _chart(study)})
+    return Section(
+        TITLE, paragraphs, _rows(study, tuning), tables, {"neura_curve": _chart(study)}, _findings(study, tuning)
+    )
+
+
+def _findings(study: NeuraStudy, tuning: Tuning) -> list[Finding]:
+    """How much of it is left in a short recorded walk."""
+    found = []
+    for q, wanted in ((1, PUBLISHED_VELOCITY), (2, PUBLISHED_ACCELERATION)):
+        here, where = [], []
+        for estimator in (OURS, LITERAL):
+            ratios = {at: float(_ratio(study, estimator, S)[q]) for at, S in tuning.named.items()}
+            here.append(f"{TITLES[estimator]} " + ", ".join(f"{change(ratio)} at {at}" for at, ratio in ratios.items()))
+            curve = np.array([_ratio(study, estimator, S)[q] for S in GRID.tolist()])
+            where.append(f"{TITLES[estimator]}: {up_to(largest_S(curve, wanted))}")
+        title = f"the same {QUANTITIES[q]} ({change(wanted)}) in a recorded walk of 10 s"
+        found.append(Finding(title, "; ".join(here), "; ".join(where)))
+    return found
 
 
 def missing_section(reason: str) -> Section:

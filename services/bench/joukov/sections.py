@@ -70,10 +70,13 @@ def number(value: float) -> str:
     return f"{value:.{decimals}f}"
 
 
-def power(S: float | None) -> str:
+def up_to(S: float | None) -> str:
+    """The largest S at which something holds, in words."""
+    return "at no S tried" if S is None else f"up to {power(S)}"
+
+
+def power(S: float) -> str:
     """S as a power of ten, for a table."""
-    if S is None:
-        return "none tried"
     mantissa, exponent = f"{S:.1e}".split("e")
     return f"{mantissa}e{int(exponent)}"
 

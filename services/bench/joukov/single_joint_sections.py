@@ -5,7 +5,7 @@ from collections.abc import Mapping, Sequence
 import numpy as np
 
 from services.bench.joukov.curve import curve_ratio, curve_rows, median_ratio, worst_ratio
-from services.bench.joukov.sections import COLOURS, Finding, Section, Table, change, number, power
+from services.bench.joukov.sections import COLOURS, Finding, Section, Table, change, number, up_to
 from services.bench.joukov.simulation import (
     JERK_EDGES,
     PUBLISHED_DEG,
@@ -75,10 +75,10 @@ def _finding(name: str, sweep: Sequence[SweepStudy]) -> Finding:
             key: np.median([s.study.curves[key][FIRST:, 0] for s in sweep], axis=0) for key in ("plain", filtered)
         }
         reached = np.flatnonzero(position[filtered] <= rhythmic / ekf * position["plain"])
-        where.append(f"{TITLES[filtered]}: up to {power(float(GRID[FIRST + reached[-1]]) if reached.size else None)}")
+        where.append(f"{TITLES[filtered]}: {up_to(float(GRID[FIRST + reached[-1]]) if reached.size else None)}")
         for tenth, at in ((False, "S*"), (True, "S*/10")):
             plain, ours = (float(median_error(sweep, key, tenth)[0]) for key in ("plain", filtered))
-            here.append(f"{TITLES[filtered]} {number(plain)} to {number(ours)} at {at}")
+            here.append(f"EKF {number(plain)} to {TITLES[filtered]} {number(ours)} at {at}")
     return Finding(
         f"position {ekf} to {rhythmic} deg ({change(rhythmic / ekf)}), {name}", "; ".join(here), "; ".join(where)
     )

@@ -6,7 +6,7 @@ import pytest
 
 from services.bench.joukov import board
 from services.bench.joukov.report import write_report
-from services.bench.joukov.sections import Finding, Section, Table, change, number, power
+from services.bench.joukov.sections import Finding, Section, Table, change, number, up_to
 from services.bench.registry import SCOREBOARDS, joukov
 from services.bench.scoreboard import at_most, informative
 
@@ -36,7 +36,7 @@ def test_a_report_has_its_findings_targets_tables_and_charts(tmp_path):
 
 def test_numbers_are_short():
     assert [number(v) for v in (0.1234, 12.34, 1234.5, float("nan"))] == ["0.12", "12.3", "1234", "-"]
-    assert [power(S) for S in (1e4, 31622.8, None)] == ["1.0e4", "3.2e4", "none tried"]
+    assert [up_to(S) for S in (1e4, 31622.8, None)] == ["up to 1.0e4", "up to 3.2e4", "at no S tried"]
     assert [change(r) for r in (0.6, 1.02)] == ["-40 %", "+2 %"]
 
 
