@@ -199,7 +199,22 @@ def cost_rows(samples: int = 60000, repeats: int = 5) -> list[Row]:
         trusted = _cost_us(partial(TrustedRhythm, channels), wave, repeats)
         literal = _cost_us(partial(JoukovOscillator, channels), wave, repeats)
         rows.append(at_most(f"cost, {channels} channels", trusted, "us/sample", 1.0, literal))
+    noise = np.random.default_rng(9).standard_normal((samples, 4))
+    rows.append(
+        informative(
+            "cost, 4 channels, known rhythm never found",
+            _cost_us(_knowing, noise, repeats),
+            "us/sample",
+            _cost_us(partial(TrustedRhythm, 4), noise, repeats),
+        )
+    )
     return rows
+
+
+def _knowing() -> TrustedRhythm:
+    rhythm = TrustedRhythm(4)
+    rhythm.start_from(np.random.default_rng(8).standard_normal((2, 4, 7)), 6.0)
+    return rhythm
 
 
 def _cost_us(build: Callable[[], TrustedRhythm | JoukovOscillator], wave: NDArray[np.float64], repeats: int) -> float:

@@ -2,6 +2,7 @@
 
 from collections.abc import Callable, Sequence
 from itertools import pairwise
+from math import degrees
 
 import numpy as np
 
@@ -84,9 +85,9 @@ def side_rows(follow: Follow) -> list[Row]:
     found = follow("distance of sides", side_distance, [round(100 * asymmetry) for asymmetry in ASYMMETRIES])
     least_growth = min(after - before for before, after in pairwise(found))
     return [
-        at_least("distance: least growth from 0.1 to 0.1 of asymmetry", np.degrees(least_growth), "deg", 0.1),
-        at_most("distance: sides of a symmetric walker", np.degrees(found[0]), "deg", 0.5),
-        informative("distance: sides at asymmetry 0.4", np.degrees(found[-1]), "deg"),
+        at_least("distance: least growth from 0.1 to 0.1 of asymmetry", degrees(least_growth), "deg", 0.1),
+        at_most("distance: sides of a symmetric walker", degrees(found[0]), "deg", 0.5),
+        informative("distance: sides at asymmetry 0.4", degrees(found[-1]), "deg"),
     ]
 
 
@@ -131,13 +132,13 @@ def recorded_rows() -> list[Row]:
     sides = between_sides(whole)
     rows = [
         informative("recorded walk: strides there, and back as baseline", there.strides, "strides", back.strides),
-        informative("recorded walk: left and right", np.degrees(sides.distance), "deg"),
-        informative("recorded walk: left and right, by chance", np.degrees(sides.chance), "deg"),
+        informative("recorded walk: left and right", degrees(sides.distance), "deg"),
+        informative("recorded walk: left and right, by chance", degrees(sides.chance), "deg"),
         informative("recorded walk: left and right, shape", sides.shape, "1"),
         informative("recorded walk: right leg late by", 100 * (sides.shift % (2 * np.pi) - np.pi) / (2 * np.pi),
                     "% of stride"),
     ]  # fmt: skip
     for side, joints in SIDES.items():
         result = compare_legs(leg(there, joints), leg(back, joints))
-        rows.append(informative(f"recorded walk: there and back, {side}", np.degrees(result.distance), "deg"))
+        rows.append(informative(f"recorded walk: there and back, {side}", degrees(result.distance), "deg"))
     return rows
