@@ -1,5 +1,6 @@
 """One walk estimated again and again under faults, and how far its joints are then from the truth."""
 
+import math
 from collections.abc import Sequence
 from dataclasses import dataclass
 
@@ -8,6 +9,7 @@ from numpy.typing import NDArray
 
 from schemas.imu import ReferenceBatch
 from schemas.kinematics import Calibration, JointState
+from schemas.rhythm import Rhythm
 from schemas.session import SessionDescription
 from schemas.signals import IMU
 from schemas.vocabulary import LOWER_BODY, Side
@@ -51,6 +53,8 @@ class Estimated:
     std: Array  # (n, 15) deg
     valid: Flags  # (n, 15)
     calibration: Calibration
+    locked_from_s: float
+    """When the rhythm was locked first; infinite if it never was."""
     lost_share: float
     """Of the samples that were sent."""
 
@@ -98,12 +102,15 @@ def estimate(walk: Walk, estimator: str, faults: Sequence[SampleFault] = ()) -> 
     injection = Injection(walk.sensors, faults)
     calibration: Calibration | None = None
     rows: list[tuple[int, list[float], list[float], list[bool]]] = []
+    locked: list[int] = []
     for message in injection.apply(walk.messages):
         for output in node.finish() if message.envelope.final else node.step(message):
             state = output.payload
             if isinstance(state, JointState):
                 valid = [state.valid] * len(state.captured_ns)
                 rows += zip(state.captured_ns, state.position, state.position_std, valid, strict=True)
+            elif isinstance(state, Rhythm):
+                locked += [ns for ns, is_locked in zip(state.captured_ns, state.locked, strict=True) if is_locked]
             elif isinstance(state, Calibration):
                 calibration = state
     if calibration is None:
@@ -111,4 +118,5 @@ def estimate(walk: Walk, estimator: str, faults: Sequence[SampleFault] = ()) -> 
     times, position, std, flags = zip(*rows, strict=True)
     lost = sum(len(times) for times in injection.lost.values()) / sum(injection.sent.values())
     angles, deviations = np.degrees(np.array(position)), np.degrees(np.array(std))
-    return Estimated(np.array(times) * 1e-9, angles, deviations, np.array(flags), calibration, lost)
+    from_s = min(locked) * 1e-9 if locked else math.inf
+    return Estimated(np.array(times) * 1e-9, angles, deviations, np.array(flags), calibration, from_s, lost)
