@@ -109,7 +109,7 @@ class UnmodelledErrors:
     soft_tissue_shank: float = 0.021
     soft_tissue_rate: float = 7.0  # rad/s: it moves once and twice a stride, so its velocity is its angle times this
     gravity_thigh: float = 0.005  # accelerations of a walking thigh, read as gravity, beyond the filter's covariance
-    gravity_shank: float = 0.022  # the same of a shank; both chosen on synthetic walks. They grow with the speed
+    gravity_shank: float = 0.026  # the same of a shank; both chosen on synthetic walks. They grow with the speed
 
 
 @dataclass(frozen=True)

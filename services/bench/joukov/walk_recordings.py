@@ -11,7 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from schemas.session import SessionDescription
-from schemas.vocabulary import LOWER_BODY
+from services.bench.joukov.recordings import COLUMNS, JOINTS
 from services.estimation.calibrator import Calibrator
 from services.estimation.lower_body_filter import Calibrated, LowerBodyFilter
 from services.estimation.parameters import EstimationParameters, FilterParameters
@@ -22,9 +22,6 @@ from services.ingest.tracks import ImuTrack
 
 FloatArray = NDArray[np.float64]
 
-JOINTS = ("hip_flexion_right", "hip_flexion_left", "knee_flexion_right", "knee_flexion_left")
-"""What is scored: both hips, then both knees."""
-COLUMNS = np.array([next(i for i, dof in enumerate(LOWER_BODY) if dof.name == name) for name in JOINTS])
 EVERYONE = np.ones(5, dtype=np.bool_)
 INSTANTANEOUS = FilterParameters(sample_delay=0.0)
 

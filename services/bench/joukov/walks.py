@@ -12,7 +12,7 @@ from rich.progress import Progress
 
 from services.bench.joukov.study import QUANTITIES, UNITS
 from services.bench.joukov.varied_walks import VariedWalk
-from services.bench.joukov.walk_bands import CASES, Band, band_rows, study_band
+from services.bench.joukov.walk_bands import CASES, Band, band_rows, band_seeds, study_band
 from services.bench.joukov.walk_curves import (
     FILTERS,
     GRID,
@@ -70,7 +70,7 @@ def study_walks(progress: Progress, seeds: Sequence[int]) -> WalkStudies:
     ]
     cases = [(kind, sensors, seed) for kind in KINDS for sensors in SENSORS for seed in seeds]
     falls = [fall for case in progress.track(cases, description="disturbed walks") for fall in study_falls(*case)]
-    walks = [(case, seed) for case in CASES for seed in seeds]
+    walks = [(case, seed) for case in CASES for seed in band_seeds(seeds)]
     bands = [study_band(*walk) for walk in progress.track(walks, description="deviations")]
     return WalkStudies(curves, falls, bands, skipped)
 
