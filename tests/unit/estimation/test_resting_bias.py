@@ -2,13 +2,19 @@
 
 import json
 import math
+import sys
+from pathlib import Path
 
 import numpy as np
 import pytest
 
-from services.estimation.parameters import BiasParameters, StandingParameters
+from services.estimation.node import EstimationNode
+from services.estimation.parameters import BiasParameters, EstimationParameters, StandingParameters
 from services.estimation.resting_bias import RestingBias
 from services.estimation.samples import Tick
+
+sys.path.insert(0, str(Path(__file__).parent))
+import estimation_walks as walks
 
 TICK_NS = 10_000_000
 GRAVITY = np.array([0.0, 9.81, 0.0])
@@ -85,3 +91,28 @@ def test_goes_on_to_the_bit_after_a_restart(cut: int) -> None:
     for tick in whole[cut:]:
         assert through.add(tick) == resumed.add(tick)
         np.testing.assert_array_equal(through.bias, resumed.bias)
+
+
+def test_the_filter_goes_on_with_the_new_bias_also_after_a_restart() -> None:
+    """9 s of walking, then 8 s of standing in which every gyroscope is off by another 0.01 rad/s about each axis."""
+    description, walked = walks.describe(), walks.walk()[1]
+    pause = np.concatenate([walked[:200]] * 4)
+    pause[:, :, :3] += 0.01
+    stream = walks.messages(description, np.concatenate([walked, pause]))
+    followed, kept = (
+        walks.run(EstimationNode(description, EstimationParameters(follow_bias=follow)), stream)
+        for follow in (True, False)
+    )
+
+    def fastest(outputs) -> float:
+        """rad/s, mean rate of the joints of the last second: nobody moves."""
+        rates = np.array([row for state in walks.joint_states(outputs) for row in state.velocity])
+        return float(np.abs(rates[-100:].mean(axis=0)).max())
+
+    assert fastest(followed) < 0.6 * fastest(kept)
+    first, second = EstimationNode(description), EstimationNode(description)
+    half = len(stream) - 150
+    begun = [output for message in stream[:half] for output in first.step(message)]
+    second.restore(json.loads(json.dumps(first.snapshot())))
+    rest = [output for message in stream[half:] for output in second.step(message)] + second.finish()
+    assert walks.text([*begun, *rest]) == walks.text(followed)

@@ -247,6 +247,16 @@ def test_noise_bias_and_mounting_are_what_was_asked_for():
         assert np.linalg.det(mount.R_segment_from_sensor) == pytest.approx(1)
 
 
+def test_a_bias_drifts_as_fast_as_was_asked_for():
+    steady = WalkParameters(duration=30.0, standing=25.0, seed=9)
+    walks = [SyntheticWalk(p) for p in (steady, dataclasses.replace(steady, gyro_drift=0.06))]
+    rates = [next(walk.samples()).sensors[0].angular_velocity for walk in walks]
+    drift = walks[1].mounts[0].gyro_drift
+    np.testing.assert_allclose((rates[1] - rates[0])[[0, 500]], [[0, 0, 0], 5.0 * drift], atol=1e-12)
+    drawn = [mount.gyro_drift * 600.0 for mount in walks[1].mounts]
+    assert np.std(drawn) == pytest.approx(0.06, rel=0.4)
+
+
 def test_jets_follow_the_rules_of_calculus():
     t = np.linspace(0.1, 1.0, 7)
     clock = Jet(t, np.ones_like(t), np.zeros_like(t))
