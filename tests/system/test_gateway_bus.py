@@ -143,7 +143,8 @@ def test_orders_reach_the_ingest_and_refusals_come_back(settings, closing, tmp_p
     with pytest.raises(ControlRefused, match="does not run here"):
         control.stop("b")
     start = dict(orders)["start"]
-    assert start == {"session": "a", "source": "synthetic:walk", "speed": 1.0, "estimator": None, "walk_path": None}
+    chosen = {"estimator": None, "walk_path": None, "known_rhythms": None}
+    assert start == {"session": "a", "source": "synthetic:walk", "speed": 1.0} | chosen
 
 
 def test_before_there_is_a_router_orders_say_so(tmp_path):
