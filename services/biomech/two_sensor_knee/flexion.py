@@ -34,14 +34,20 @@ def twist(relative: FloatArray, axes: FloatArray, across: FloatArray) -> float:
 
 @compiled
 def follow_angle(memory: Memory, bench: Bench, is_moving: bool, dt_s: float) -> None:
-    """Unwrap the angle, settle its sign, and say where its zero is."""
-    knee, parameters = memory.knee[0], bench.parameters[0]
+    """Unwrap the angle, and remember the postures it moves through."""
+    knee = memory.knee[0]
     knee.angle += wrapped(twist(bench.relative, memory.axes, memory.across) - knee.angle)
     if is_moving:
-        height = sensor_height(memory, bench.R[THIGH, 1], bench.R[SHANK, 1])
-        follow_posture(memory, height, upright_share(memory, THIGH, bench.R[THIGH, 1]), dt_s)
+        follow_posture(memory, bench, dt_s)
+
+
+@compiled
+def settle(memory: Memory, parameters: Record) -> None:
+    """Say where the zero is and which way the knee bends."""
+    if memory.posture[0].weight > 0.0:
         settle_zero(memory, parameters)
         settle_sign(memory, parameters)
+    memory.knee[0].sensor_turn = turn_from_sensor_axes(memory.axes, memory.across)
 
 
 @compiled
@@ -137,9 +143,15 @@ def sensor_height(memory: Memory, up_thigh: FloatArray, up_shank: FloatArray) ->
 
 
 @compiled
-def follow_posture(memory: Memory, height: float, upright: float, dt_s: float) -> None:
+def follow_posture(memory: Memory, bench: Bench, dt_s: float) -> None:
     """Running moments of angle and height, forgotten over half a minute of motion."""
     posture, angle = memory.posture[0], memory.knee[0].angle
+    up_thigh, up_shank = bench.R[THIGH, 1], bench.R[SHANK, 1]
+    height, upright = 0.0, 0.0
+    for i in range(3):
+        upright -= up_thigh[i] * memory.arms[THIGH, i]
+        height += up_shank[i] * memory.arms[SHANK, i]
+    height += upright
     keep = 1.0 - low_pass_gain(POSTURE_MEMORY_S, dt_s)
     posture.weight = keep * posture.weight + dt_s
     posture.angle = keep * posture.angle + dt_s * angle
@@ -170,8 +182,8 @@ def settle_sign(memory: Memory, parameters: Record) -> None:
     if angle_variance < SIGN_SPREAD**2 or height_variance < 1e-6:
         return
     evidence = 0.0
-    is_upright_thigh = posture.upright / posture.weight >= parameters.upright_share
-    if is_upright_thigh and arm_length(memory, THIGH) >= parameters.shortest_arm:
+    arm = arm_length(memory, THIGH)
+    if arm >= parameters.shortest_arm and posture.upright >= parameters.upright_share * arm * posture.weight:
         covariance = posture.angle_height / posture.weight - angle * height
         evidence = -covariance / sqrt(angle_variance * height_variance)
     if knee.is_standing > 0.0:

@@ -85,7 +85,7 @@ def begin_hinge(memory: Memory, bench: Bench, heading: float, std: float) -> Non
     """Begin with this heading (rad, and its deviation); forget axis, angle and posture."""
     knee = memory.knee[0]
     knee.heading, knee.heading_variance = heading, std**2
-    knee.is_tied, knee.contradictions, knee.moving_s = 1.0, 0.0, 0.0
+    knee.is_tied, knee.contradictions, knee.moving_s, knee.axis_std, knee.has_angle = 1.0, 0.0, 0.0, 0.0, 0.0
     knee.angle, knee.zero, knee.is_zero_set, knee.is_sign_known, knee.is_standing = 0.0, 0.0, 0.0, 0.0, 0.0
     memory.scatter[:] = 0.0
     memory.axes[:] = 0.0

@@ -1,8 +1,8 @@
 """The flexion axis by principal components of the relative angular velocity, sample by sample.
 
 McGrath et al. 2018, eq. 1: the relative angular velocity of a hinge lies along its axis. The scatter of it is kept in
-the frame of each sensor and forgotten over motion, so that the axis may wander; one power iteration a sample from the
-axis before finds the first component and keeps its sign.
+the frame of each sensor and forgotten over motion, so that the axis may wander; one power iteration every now and
+then from the axis before finds the first component and keeps its sign.
 """
 
 from math import sqrt
@@ -10,10 +10,13 @@ from math import sqrt
 from services.biomech.two_sensor_knee.compiled import compiled
 from services.biomech.two_sensor_knee.memory import SHANK, THIGH, Bench, FloatArray, Memory
 
+UNKNOWN_STD = 1.5
+"""rad. Of an axis that nothing is known of."""
+
 
 @compiled
 def follow_axis(memory: Memory, bench: Bench, dt_s: float) -> bool:
-    """Add the sample's relative rate to both scatters and move both axes; False when it is too slow to tell."""
+    """Add the sample's relative rate to both scatters; False when it is too slow to tell."""
     knee, parameters, relative, rate = memory.knee[0], bench.parameters[0], bench.midway, bench.rate
     in_thigh = (
         relative[0, 0] * rate[1, 0] + relative[0, 1] * rate[1, 1] + relative[0, 2] * rate[1, 2] - rate[0, 0],
@@ -30,41 +33,66 @@ def follow_axis(memory: Memory, bench: Bench, dt_s: float) -> bool:
         return False
     keep = max(0.0, 1.0 - dt_s / parameters.axis_memory_s)
     if knee.moving_s == 0.0:
-        begin_axes(memory, bench, in_thigh, in_shank, sqrt(square))
+        begin_axes(memory, in_thigh, in_shank, sqrt(square))
     knee.moving_s = keep * knee.moving_s + dt_s
     add_scatter(memory.scatter[THIGH], in_thigh, keep, dt_s)
     add_scatter(memory.scatter[SHANK], in_shank, keep, dt_s)
-    for s in range(2):
-        iterate(memory.scatter[s], memory.axes[s])
-        straighten(memory.across[s], memory.axes[s])
     return True
 
 
 @compiled
-def begin_axes(
-    memory: Memory,
-    bench: Bench,
-    in_thigh: tuple[float, float, float],
-    in_shank: tuple[float, float, float],
-    length: float,
-) -> None:
-    """Both axes along the first relative rate, whose sign is the same for both; this pose becomes angle 0.
+def improve_axes(memory: Memory, bench: Bench) -> None:
+    """Move both axes towards the first components, and say how well they are known."""
+    for s in range(2):
+        iterate(memory.scatter[s], memory.axes[s])
+        straighten(memory.across[s], memory.axes[s])
+    memory.knee[0].axis_std = axis_deviation(memory, bench)
+    if memory.knee[0].has_angle == 0.0:
+        pair_axes(memory, bench)
 
-    `across` is the part of the vertical perpendicular to the axis (of a horizontal direction if the axis is upright),
-    so that nothing depends on how the sensors are mounted.
-    """
-    axes, across = memory.axes, memory.across
+
+@compiled
+def pair_axes(memory: Memory, bench: Bench) -> None:
+    """Give the shank's axis the sense of the thigh's: a first rate across the axis leaves them free to part."""
+    along = 0.0
     for i in range(3):
-        axes[THIGH, i] = in_thigh[i] / length
-        axes[SHANK, i] = in_shank[i] / length
-    R = bench.R[THIGH]
+        for k in range(3):
+            along += memory.axes[THIGH, i] * bench.relative[i, k] * memory.axes[SHANK, k]
+    if along < 0.0:
+        for k in range(3):
+            memory.axes[SHANK, k] *= -1.0
+
+
+@compiled
+def begin_axes(
+    memory: Memory, in_thigh: tuple[float, float, float], in_shank: tuple[float, float, float], length: float
+) -> None:
+    """Both axes along the first relative rate: whatever their sense, it is the same for both."""
+    for i in range(3):
+        memory.axes[THIGH, i] = in_thigh[i] / length
+        memory.axes[SHANK, i] = in_shank[i] / length
+    memory.knee[0].axis_std = UNKNOWN_STD
+
+
+@compiled
+def begin_angle(memory: Memory, bench: Bench) -> None:
+    """This pose becomes angle 0: `across` is one direction in both segments.
+
+    It is the part of the vertical perpendicular to the axis (of a horizontal direction if the axis is upright), so
+    that nothing depends on how the sensors are mounted.
+    """
+    axes, across, R = memory.axes, memory.across, bench.R[THIGH]
     upright = R[1, 0] * axes[THIGH, 0] + R[1, 1] * axes[THIGH, 1] + R[1, 2] * axes[THIGH, 2]
-    across[THIGH, :] = R[1] if abs(upright) < 0.9 else R[0]
+    row = 1 if abs(upright) < 0.9 else 0
+    for i in range(3):
+        across[THIGH, i] = R[row, i]
     straighten(across[THIGH], axes[THIGH])
     for k in range(3):
         across[SHANK, k] = 0.0
         for i in range(3):
             across[SHANK, k] += bench.relative[i, k] * across[THIGH, i]
+    straighten(across[SHANK], axes[SHANK])
+    memory.knee[0].has_angle = 1.0
 
 
 @compiled
@@ -105,7 +133,7 @@ def axis_deviation(memory: Memory, bench: Bench) -> float:
     """
     knee, parameters = memory.knee[0], bench.parameters[0]
     if knee.moving_s <= 0.0:
-        return 1.5
+        return UNKNOWN_STD
     worst = 0.0
     for s in range(2):
         scatter, axis = memory.scatter[s], memory.axes[s]
@@ -118,4 +146,4 @@ def axis_deviation(memory: Memory, bench: Bench) -> float:
     # One correlation time of motion has seen a single direction: it looks perfect and says nothing.
     share = max(worst, 0.0) + (parameters.axis_correlation_s / knee.moving_s) ** 2
     random = share * parameters.axis_correlation_s / knee.moving_s
-    return min(1.5, sqrt(parameters.axis_floor**2 + random + share * parameters.axis_systematic_share**2))
+    return min(UNKNOWN_STD, sqrt(parameters.axis_floor**2 + random + share * parameters.axis_systematic_share**2))

@@ -14,12 +14,14 @@ from services.biomech.two_sensor_knee.compiled import compiled
 from services.biomech.two_sensor_knee.memory import Bench, FloatArray, Memory, Record
 from services.biomech.two_sensor_knee.turns import low_pass_gain
 
-REFINEMENTS = 3
+REFINEMENTS = 2
+IDLE, ON_GRID, SOLVED = 0, 1, 2
+"""What a sample led to: nothing, products were added, the joint was solved for."""
 
 
 @compiled
-def follow_joint(memory: Memory, bench: Bench, force: FloatArray, dt_s: float) -> bool:
-    """Take one sample (force (2, 3) m/s^2; rate and R in the bench); True when the joint was solved for."""
+def follow_joint(memory: Memory, bench: Bench, force: FloatArray, dt_s: float) -> int:
+    """Take one sample (force (2, 3) m/s^2; rate and R in the bench); IDLE, ON_GRID or SOLVED."""
     knee, parameters = memory.knee[0], bench.parameters[0]
     gain = low_pass_gain(0.5 / (pi * parameters.joint_cutoff_hz), dt_s)
     for s in range(2):
@@ -32,7 +34,7 @@ def follow_joint(memory: Memory, bench: Bench, force: FloatArray, dt_s: float) -
     knee.since_products_s += dt_s
     knee.since_solution_s += dt_s
     if knee.since_products_s < parameters.joint_interval_s - 0.5 * dt_s:
-        return False
+        return IDLE
     forgetting = exp(-knee.since_products_s / parameters.joint_memory_s)
     add_products(memory, forgetting, knee.since_products_s)
     knee.joint_moving_s *= forgetting
@@ -40,9 +42,9 @@ def follow_joint(memory: Memory, bench: Bench, force: FloatArray, dt_s: float) -
         knee.joint_moving_s += knee.since_products_s
     knee.since_products_s = 0.0
     if knee.since_solution_s < parameters.joint_solve_s:
-        return False
+        return ON_GRID
     knee.since_solution_s = 0.0
-    return solve_joint(memory, bench)
+    return SOLVED if solve_joint(memory, bench) else ON_GRID
 
 
 @compiled

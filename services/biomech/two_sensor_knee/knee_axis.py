@@ -20,12 +20,12 @@ from services.biomech.two_sensor_knee.compiled import compiled
 from services.biomech.two_sensor_knee.flexion import (
     angle_deviation,
     follow_angle,
+    settle,
     take_standing,
-    turn_from_sensor_axes,
 )
 from services.biomech.two_sensor_knee.heading import take_joint_heading, tie, tie_without_joint
-from services.biomech.two_sensor_knee.hinge_axis import axis_deviation, follow_axis
-from services.biomech.two_sensor_knee.joint_centre import follow_joint
+from services.biomech.two_sensor_knee.hinge_axis import begin_angle, follow_axis, improve_axes
+from services.biomech.two_sensor_knee.joint_centre import IDLE, SOLVED, follow_joint
 from services.biomech.two_sensor_knee.levelling import follow_level
 from services.biomech.two_sensor_knee.memory import (
     OUTPUTS,
@@ -90,42 +90,50 @@ def advance(memory: Memory, bench: Bench, rate: FloatArray, force: FloatArray, d
             for i in range(3):
                 memory.rate_before[s, i] = bench.rate[s, i]
     take_standing(memory, bench)
-    if follow_joint(memory, bench, force, interval_s):
+    due = follow_joint(memory, bench, force, interval_s)
+    if due == SOLVED:
         take_joint_heading(memory, bench)
     if knee.is_tied == 0.0:
         tie_without_joint(memory, bench, interval_s)
     if knee.is_tied > 0.0:
-        follow_hinge(memory, bench, interval_s)
+        follow_hinge(memory, bench, due, interval_s)
 
 
 @compiled
-def follow_hinge(memory: Memory, bench: Bench, dt_s: float) -> None:
-    """Axis, heading and angle of the sample, once the headings are tied."""
+def follow_hinge(memory: Memory, bench: Bench, due: int, dt_s: float) -> None:
+    """Heading, axis and angle of the sample, once the headings are tied.
+
+    What changes slowly is looked at when it is `due`: axes on the grid of the joint, sign and zero at its solutions.
+    """
     knee, parameters, output = memory.knee[0], bench.parameters[0], bench.output
+    if knee.has_angle > 0.0:
+        tie(memory, bench, knee.axis_std, dt_s)
     fill_relative(bench.R[THIGH], bench.R[SHANK], knee.heading, bench.relative)
     for i in range(3):
         for k in range(3):
             bench.midway[i, k] = 0.5 * (bench.relative[i, k] + memory.relative[i, k])
-    is_moving = follow_axis(memory, bench, dt_s)
-    axis_std = axis_deviation(memory, bench)
-    output[4] = axis_std
-    if knee.moving_s == 0.0:
-        return
-    tie(memory, bench, axis_std, dt_s)
-    fill_relative(bench.R[THIGH], bench.R[SHANK], knee.heading, bench.relative)
-    for i in range(3):
-        for k in range(3):
             memory.relative[i, k] = bench.relative[i, k]
+    is_moving = follow_axis(memory, bench, dt_s)
+    if due != IDLE:
+        improve_axes(memory, bench)
+    if knee.has_angle == 0.0:
+        if knee.moving_s < parameters.gathering_s:
+            return
+        begin_angle(memory, bench)
     follow_angle(memory, bench, is_moving, dt_s)
+    if due == SOLVED:
+        settle(memory, parameters)
     axes, rate = memory.axes, bench.rate
-    output[1] = angle_deviation(memory, bench, axis_std)
-    output[2] = 1.0 if axis_std < parameters.axis_to_believe and knee.is_sign_known > 0.0 else 0.0
-    output[3] = 0.0
+    flexion_rate = 0.0
     for i in range(3):
-        output[3] += axes[SHANK, i] * rate[SHANK, i] - axes[THIGH, i] * rate[THIGH, i]
-    now = knee.angle + parameters.sample_delay_s * output[3]
+        flexion_rate += axes[SHANK, i] * rate[SHANK, i] - axes[THIGH, i] * rate[THIGH, i]
+    now = knee.angle + parameters.sample_delay_s * flexion_rate
     output[0] = wrapped(now - knee.zero)
-    output[5] = wrapped(now + turn_from_sensor_axes(axes, memory.across))
+    output[1] = angle_deviation(memory, bench, knee.axis_std)
+    output[2] = 1.0 if knee.axis_std < parameters.axis_to_believe and knee.is_sign_known > 0.0 else 0.0
+    output[3] = flexion_rate
+    output[4] = knee.axis_std
+    output[5] = wrapped(now + knee.sensor_turn)
 
 
 @compiled

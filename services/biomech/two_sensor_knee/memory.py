@@ -50,8 +50,11 @@ KNEE = np.dtype(
         ("since_products_s", np.float64),
         ("since_solution_s", np.float64),
         ("moving_s", np.float64),  # of relative motion in the scatter
+        ("axis_std", np.float64),  # rad
+        ("has_angle", np.float64),
         ("angle", np.float64),  # rad, unwrapped, from the pose at which the headings were tied
         ("zero", np.float64),  # rad, the datum in terms of `angle`
+        ("sensor_turn", np.float64),  # rad, from `angle` to McGrath's datum
         ("standing_angle", np.float64),  # rad, of the tallest rest in terms of `angle`
         ("is_zero_set", np.float64),
         ("has_standing", np.float64),  # a rest is remembered
@@ -68,7 +71,7 @@ KNEE = np.dtype(
 POSTURE = np.dtype(
     [(name, np.float64) for name in ("weight", "angle", "height", "upright", "angle_height", "angle2", "height2")]
 )
-"""Running moments in motion: angle, height of the thigh's sensor over the shank's, vertical share of the thigh."""
+"""Running moments in motion: angle, height of the thigh's sensor over the shank's and, as `upright`, over the knee."""
 
 PARAMETERS = np.dtype([(field.name, np.float64) for field in fields(KneeAxisParameters)])
 OUTPUTS = ("flexion", "flexion_std", "is_valid", "flexion_rate", "axis_std", "flexion_from_sensor_axes")

@@ -69,6 +69,8 @@ class HingeParameters:
     """s of motion after which the axis is forgotten."""
     moving_rate: float = 0.3
     """rad/s. A relative rate above counts as motion."""
+    gathering_s: float = 1.0
+    """s of motion before the axis ties the headings and the angle begins."""
     axis_correlation_s: float = 0.3
     """s after which off-axis motion is new information. [T]"""
     axis_systematic_share: float = 0.3
