@@ -2,7 +2,7 @@
 
 import math
 from collections.abc import Callable
-from typing import NamedTuple
+from typing import Literal, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -54,8 +54,9 @@ def estimate_angles(
     build_node: Callable[[SessionDescription], Node] = build,
     during_s: tuple[float, float] = (0.0, math.inf),
     walk_path: WalkPath | None = None,
+    quantity: Literal["position", "position_std"] = "position",
 ) -> Array:
-    """Joint angles (frames, 15) in degrees through ingest and node, NaN where there is none.
+    """Joint angles, or their deviations, (frames, 15) in degrees through ingest and node, NaN where there is none.
 
     For a recording whose sensors share one rate: frame i was captured i / rate after the start. The node is shown
     what was captured `during_s`, from and before.
@@ -68,7 +69,7 @@ def estimate_angles(
         is_shown = during_s[0] <= message.envelope.captured_ns / 1e9 < during_s[1]
         for produced in chain.push(message) if is_shown or message.envelope.final else ():
             if produced.stream.signal is JOINT_STATE and isinstance(produced.payload, JointState):
-                rows += zip(produced.payload.captured_ns, produced.payload.position, strict=True)
+                rows += zip(produced.payload.captured_ns, getattr(produced.payload, quantity), strict=True)
     return _on_frames(rows, description.hubs[0].sensors[0].rate_hz)
 
 

@@ -113,10 +113,30 @@ def run(subject: str, json_path: Path | None = None) -> Scoreboard:
         rows += estimator_rows(estimator, estimate_angles(spec, estimator), truth, baseline)
     rows += without_standing_rows(without_standing(spec, truth))
     rows += walk_path_rows(spec, truth)
+    rows += deviation_rows(spec, truth)
     board = Scoreboard(f"accuracy on {spec}", rows, NOTE)
     if json_path is not None:
         board.write_json(json_path)
     return board
+
+
+def deviation_rows(spec: str, truth: NeuraTruth) -> list[Row]:
+    """How often the truths of the walk with its turn are within twice the published deviation, each side at its shift.
+
+    The soft tissue in the deviation was taken from this person: it is no test, but it shows what is claimed.
+    """
+    angles = estimate_angles(spec, "rhythmic_ekf")
+    claimed = estimate_angles(spec, "rhythmic_ekf", quantity="position_std")
+    rows: list[Row] = []
+    for label, (joint, truths) in truth.by_label().items():
+        for side, measured in truths.items():
+            column = column_of(f"{joint}_flexion_{side}")
+            shift = best_score(angles[:, column], measured, WITH_TURN).shift
+            error, std = angles[WITH_TURN + shift, column] - measured[WITH_TURN], claimed[WITH_TURN + shift, column]
+            for what, left in (("absolute", error), ("offset removed", error - error.mean())):
+                held = 100.0 * float(np.mean(np.abs(left) < 2.0 * std))
+                rows.append(informative(f"{label} {side}, with turn: within 2 std, {what}", held, "%"))
+    return rows
 
 
 def walk_path_rows(spec: str, truth: NeuraTruth) -> list[Row]:
