@@ -9,14 +9,14 @@ from numpy.typing import NDArray
 
 from schemas.health import Rejection
 from schemas.imu import StandingMark
-from schemas.kinematics import JointState
-from schemas.rhythm import LearnedRhythm, Rhythm
+from schemas.rhythm import LearnedRhythm
 from schemas.session import SessionDescription
 from schemas.signals import CALIBRATION, JOINT_STATE, LEARNED_RHYTHM, LIVE_POSE, RHYTHM, SEGMENT_MOTION, Signal
 from schemas.vocabulary import LOWER_BODY, Segment
 from services.biomech.event_sources import lone_segments, worn_segments
-from services.estimation.calibration_message import MODEL, calibration_message
+from services.estimation.calibration_message import calibration_message
 from services.estimation.calibrator import Calibrator, pack_calibrated, unpack_calibrated
+from services.estimation.estimates import estimates
 from services.estimation.intake import Intake
 from services.estimation.learning import RhythmLearning, start_rhythm
 from services.estimation.live_pose import estimated_pose, sensor_statuses, unused_statuses, waiting_pose
@@ -187,7 +187,7 @@ class EstimationNode:
                 self._believe(running, self._bias.bias)
             row = running.fuse(tick.first(self._intake.body_sensors))
             if rows and (running.valid != valid or running.observed != observed):
-                outputs += _estimates(rows, valid, observed, self._lone)
+                outputs += estimates(rows, valid, observed, self._lone)
                 rows = []
             rows.append(row)
             valid, observed = running.valid, running.observed
@@ -196,7 +196,7 @@ class EstimationNode:
                 self._lone.take(tick, row.position[TILT], row.position[OBLIQUITY])
         if not rows:
             return []
-        outputs += _estimates(rows, valid, observed, self._lone) + learned
+        outputs += estimates(rows, valid, observed, self._lone) + learned
         return outputs + self._picture(running, rows[-1])
 
     def _believe(self, running: LowerBodyFilter, gyro_bias: NDArray[np.float64]) -> None:
@@ -259,39 +259,6 @@ class EstimationNode:
 
 def _learned(rhythm: LearnedRhythm | None) -> list[Output]:
     return [] if rhythm is None else [Output(LEARNED_RHYTHM, rhythm.captured_ns, rhythm)]
-
-
-def _estimates(rows: list[Row], valid: list[bool], observed: list[Segment], lone: LoneSegments | None) -> list[Output]:
-    newest_ns = rows[-1].captured_ns
-    joints = _joint_state(rows, valid, observed)
-    outputs = [Output(JOINT_STATE, newest_ns, joints), Output(RHYTHM, newest_ns, _rhythm(rows))]
-    if lone is not None:
-        outputs.append(Output(SEGMENT_MOTION, newest_ns, lone.collect(joints.captured_ns)))
-    return outputs
-
-
-def _joint_state(rows: list[Row], valid: list[bool], observed: list[Segment]) -> JointState:
-    return JointState(
-        model=MODEL,
-        captured_ns=[row.captured_ns for row in rows],
-        position=[row.position for row in rows],
-        velocity=[row.velocity for row in rows],
-        acceleration=[row.acceleration for row in rows],
-        position_std=[row.position_std for row in rows],
-        velocity_std=[row.velocity_std for row in rows],
-        valid=valid,
-        observed=observed,
-    )
-
-
-def _rhythm(rows: list[Row]) -> Rhythm:
-    return Rhythm(
-        captured_ns=[row.captured_ns for row in rows],
-        phase=[row.rhythm.phase for row in rows],
-        frequency=[row.rhythm.frequency for row in rows],
-        quality=[row.rhythm.quality for row in rows],
-        locked=[row.rhythm.locked for row in rows],
-    )
 
 
 def build(description: SessionDescription) -> Node:
