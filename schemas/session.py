@@ -93,8 +93,8 @@ class SessionDescription(Payload):
     @model_validator(mode="before")
     @classmethod
     def _of_an_older_writer(cls, fields: Any) -> Any:
-        """A session from before rhythms were handed on knew none."""
-        return {"known_rhythms": [], **fields} if isinstance(fields, dict) else fields
+        """A session from before these fields existed knew no rhythm, and anybody might turn."""
+        return {"known_rhythms": [], "walk_path": "turning", **fields} if isinstance(fields, dict) else fields
 
     @model_validator(mode="after")
     def _one_of_each_kind(self) -> Self:
