@@ -135,6 +135,7 @@ def test_orders_reach_the_ingest_and_refusals_come_back(settings, closing, tmp_p
         closing(bus.serve(key, handle))
 
     serve("start", describe("a").model_dump(mode="json"))
+    serve("mark", {"session": "a", "from_s": 9.5, "to_s": 12.5})
     serve("stop", {"error": "session b does not run here"})
     serve("sources", {"recordings": [{"name": "some_walk", "title": "Some walk", "duration_s": None}]})
     wait(lambda: answers(control), "the ingest answers")
@@ -142,9 +143,11 @@ def test_orders_reach_the_ingest_and_refusals_come_back(settings, closing, tmp_p
     assert control.start(ORDER) == describe("a")
     with pytest.raises(ControlRefused, match="does not run here"):
         control.stop("b")
-    start = dict(orders)["start"]
+    assert control.mark("a", 3.0, 12.5) == (9.5, 12.5)
+    start, mark = dict(orders)["start"], dict(orders)["mark"]
     chosen = {"estimator": None, "walk_path": None, "known_rhythms": None}
     assert start == {"session": "a", "source": "synthetic:walk", "speed": 1.0} | chosen
+    assert mark == {"session": "a", "last_s": 3.0, "at_s": 12.5}
 
 
 def test_before_there_is_a_router_orders_say_so(tmp_path):
