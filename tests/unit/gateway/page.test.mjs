@@ -119,6 +119,8 @@ test("names are written for readers", () => {
   assert.equal(metricGroup({ name: "stride_time_cv", side: null }), "variability");
   assert.equal(metricGroup({ name: "stride_time_sd", side: null }), null);
   assert.equal(metricGroup({ name: "stance_fraction", side: "left" }), "sides");
+  assert.equal(metricGroup({ name: "rhythm_side_distance", side: null }), "legs");
+  assert.equal(metricGroup({ name: "rhythm_distance_exemplar", side: "left" }), "sides");
   assert.equal(lastData(0.21), "last data 0.2 s ago");
 });
 

@@ -96,6 +96,7 @@ export class ReportView {
     fill(
       this.more,
       ratioTable("Symmetry", "larger side / smaller side, 1.00 is equal", groups.symmetry),
+      ratioTable("Left against right", "mean hip and knee curves over the stride, 0 is equal", groups.legs),
       ratioTable("Variability", "standard deviation / mean", groups.variability),
     );
   }

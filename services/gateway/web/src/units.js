@@ -17,7 +17,7 @@ const SHOWN = {
 /** How a metric of that unit is shown: factor, unit, digits. Shares of one become per cent. */
 export function shown(unit, name) {
   if (name.endsWith("_fraction")) return PERCENT;
-  if (name.endsWith("_cv")) return { ...PERCENT, digits: 1 };
+  if (name.endsWith("_cv") || name.endsWith("_timing")) return { ...PERCENT, digits: 1 };
   if (name.startsWith("strides_")) return { factor: 1, unit: "", digits: 0 };
   return SHOWN[unit] ?? { factor: 1, unit: unit === "1" ? "" : unit, digits: 2 };
 }

@@ -23,6 +23,15 @@ const METRICS = {
   hip_flexion_range: "Hip flexion range",
   hip_flexion_peak: "Peak hip flexion",
   hip_extension_peak: "Peak hip extension",
+  rhythm_side_distance: "Distance between the legs",
+  rhythm_side_shape: "Difference in shape between the legs",
+  rhythm_side_timing: "Right leg later than half a stride",
+  rhythm_distance_previous_trial: "Distance from the previous trial",
+  rhythm_shape_previous_trial: "Difference in shape from the previous trial",
+  rhythm_distance_previous_visit: "Distance from the previous visit",
+  rhythm_shape_previous_visit: "Difference in shape from the previous visit",
+  rhythm_distance_exemplar: "Distance from the exemplar",
+  rhythm_shape_exemplar: "Difference in shape from the exemplar",
   strides_counted: "Strides counted",
   strides_turning: "Strides while turning",
   strides_rejected: "Strides left out",
@@ -43,6 +52,7 @@ export function metricName(name) {
 export function metricGroup({ name, side }) {
   if (name.endsWith(DEVIATION)) return null;
   if (name.endsWith(RATIO)) return "symmetry";
+  if (name.startsWith("rhythm_side_")) return "legs";
   if (name.endsWith(VARIATION)) return side === null ? "variability" : null;
   if (side !== null) return name.startsWith("strides_") ? "counts" : "sides";
   return "headlines";
