@@ -21,8 +21,10 @@ from schemas.signals import (
     GAIT_EVENT,
     IMU,
     JOINT_STATE,
+    LEARNED_RHYTHM,
     METRICS,
     RHYTHM,
+    SEGMENT_MOTION,
     STRIDE,
     checkpoint_key,
     command_key,
@@ -41,7 +43,8 @@ from services.flow.message import Envelope, Stream
 
 pytestmark = pytest.mark.system
 HUB = Stream(IMU, "hub")
-COMPUTED = [Stream(each, each.producer) for each in (CALIBRATION, JOINT_STATE, RHYTHM, GAIT_EVENT, STRIDE, METRICS)]
+SIGNALS = (CALIBRATION, JOINT_STATE, RHYTHM, SEGMENT_MOTION, LEARNED_RHYTHM, GAIT_EVENT, STRIDE, METRICS)
+COMPUTED = [Stream(each, each.producer) for each in SIGNALS]
 RATE_HZ = 100
 
 
