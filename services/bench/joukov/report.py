@@ -1,5 +1,6 @@
 """The scoreboard of the Rhythmic EKF as a folder: report.md, its charts, every row."""
 
+import re
 from collections.abc import Sequence
 from pathlib import Path
 
@@ -25,8 +26,8 @@ def write_report(folder: Path, title: str, sections: Sequence[Section]) -> None:
         for name, svg in section.charts.items():
             (folder / f"{name}.svg").write_text(svg, encoding="utf-8")
         lines += ["", f"## {place}. {section.title}", "", *_section(section)]
-    # The star of S* would begin an emphasis.
-    text = "\n".join(lines).replace("S*", "S\\*")
+    # The star of S* would begin an emphasis; the bold S is left alone.
+    text = re.sub(r"S\*(?!\*(?!\*))", r"S\\*", "\n".join(lines))
     (folder / "report.md").write_text(text + "\n", encoding="utf-8")
 
 

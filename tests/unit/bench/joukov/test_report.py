@@ -31,7 +31,9 @@ def test_a_report_has_its_findings_targets_tables_and_charts(tmp_path):
     assert re.search(r"<details>.*more.*</details>", text, re.DOTALL)
     for chart in re.findall(r"\((\w+\.svg)\)", text):
         assert (tmp_path / chart).exists()
-    assert "S*" not in text
+    assert "**S** is the process noise" in text
+    assert r"**S\*** is a tuning" in text
+    assert r"What was done at S\*, and at S\*/10." in text
 
 
 def test_numbers_are_short():
