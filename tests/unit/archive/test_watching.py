@@ -69,6 +69,8 @@ def test_every_archived_stream_of_a_session_is_expected(description):
         "calibration/estimation",
         "joint_state/estimation",
         "rhythm/estimation",
+        "learned_rhythm/estimation",
+        "segment_motion/estimation",
         "gait_event/segmentation",
         "stride/segmentation",
         "metrics/metrics",
