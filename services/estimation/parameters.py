@@ -152,7 +152,8 @@ class FilterParameters:
     unworn_std: float = 0.1  # rad and rad/s at 100 Hz: the same where no sensor is worn. Looser, an unseen pelvis
     # shakes with every landing of the leg (1 deg at the knee); tighter on silent sensors, their return takes longer
     rest_acceleration_std: float = 10.0  # rad/s^2 at 100 Hz, the same for its acceleration
-    rhythm: TrustedParameters = field(default_factory=lambda: TrustedParameters(harmonics=10))
+    rhythm: TrustedParameters = field(default_factory=TrustedParameters)  # 10 harmonics pay on long even walks, harm on
+    # the recorded one of 10 s
     gate: InnovationGate = field(default_factory=InnovationGate)
     judges: Literal["segment", "leg", "body"] = "segment"  # whose gyroscopes decide whether a joint follows the rhythm
     unmodelled: UnmodelledErrors = field(default_factory=UnmodelledErrors)

@@ -27,7 +27,7 @@ FILTERS: dict[str, tuple[str, FilterParameters]] = {
     PLAIN: ("ekf", INSTANTANEOUS),
     OURS: ("rhythmic_ekf", INSTANTANEOUS),
     "two states": ("rhythmic_ekf", replace(INSTANTANEOUS, calm_share=1.0)),
-    "7 harmonics": ("rhythmic_ekf", replace(INSTANTANEOUS, rhythm=TrustedParameters(harmonics=7))),
+    "10 harmonics": ("rhythmic_ekf", replace(INSTANTANEOUS, rhythm=TrustedParameters(harmonics=10))),
     PUBLISHED: ("rhythmic_ekf_joukov", INSTANTANEOUS),
 }
 """Estimator and parameters. "two states" is the rhythmic filter without the state that has less process noise."""

@@ -114,7 +114,7 @@ def walk_charts(studies: WalkStudies) -> dict[str, str]:
         for p, pair in enumerate(PAIRS):
             for q in (1, 2):
                 lines = {}
-                for name in (PLAIN, OURS, "7 harmonics", PUBLISHED):
+                for name in (PLAIN, OURS, "10 harmonics", PUBLISHED):
                     error = np.degrees(curves.mean(name)[:, q, p])
                     lines[name] = list(zip(GRID.tolist(), error.tolist(), strict=True))
                 title = f"{curves.kind}: {pair} {QUANTITIES[q]}"
