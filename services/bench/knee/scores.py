@@ -32,7 +32,7 @@ class KneeScore(NamedTuple):
 
 
 def run_knee(recording: KneeRecording, parameters: KneeAxisParameters, *, warm: bool = False) -> tuple[Array, KneeAxis]:
-    """Our outputs (n, 6) and the estimator at the end; `warm` has it see the recording once before."""
+    """Our outputs (n, 8) and the estimator at the end; `warm` has it see the recording once before."""
     estimator = KneeAxis(parameters)
     if warm:
         estimator.run(recording.rate, recording.force, 1.0 / recording.rate_hz)

@@ -26,7 +26,7 @@ STRAIGHT, WITH_TURN = np.r_[1119:1454, 1651:2073], np.r_[1119:2073]
 
 NOTES = {
     "fan": "Drop landings, 100 Hz. First and last 20 s of valid angle are compared for drift. The laboratory's knee is "
-    "10 deg while standing. Nothing was chosen by these errors; the gates of the first tie were set with it in view.",
+    "10 deg while standing. Nothing was chosen by these errors, but gates of tie and sign were set with it in view.",
     "alborno": "Sit-to-stand, 40 Hz, thigh and shank of the left leg; repetitions from 15.4 s on. Nothing was chosen "
     "by these errors; the gates of the first tie were set with it in view.",
     "neura": "Thigh and lower shank, 100 Hz, one walk of 9.5 s; truth Plug-in-Gait, which differs by 4.2 deg on the "

@@ -53,6 +53,9 @@ class Datum(StrEnum):
     SET = "set"  # the pose that was declared
 
 
+DATUMS = (Datum.START, Datum.STANDING, Datum.SET)
+
+
 class KneeReading(NamedTuple):
     """Flexion of one sample, rad and rad/s; positive when the knee bends."""
 
@@ -134,6 +137,8 @@ def follow_hinge(memory: Memory, bench: Bench, due: int, dt_s: float) -> None:
     output[3] = flexion_rate
     output[4] = knee.axis_std
     output[5] = wrapped(now + knee.sensor_turn)
+    output[6] = knee.is_sign_known
+    output[7] = 2.0 if knee.is_zero_set > 0.0 else knee.is_standing
 
 
 @compiled
@@ -168,7 +173,7 @@ def bridge_gap(memory: Memory, gap_s: float, drift: float) -> None:
 def advance_many(
     memory: Memory, bench: Bench, rate: FloatArray, force: FloatArray, dt_s: float, out: FloatArray
 ) -> None:
-    """`advance` over rate and force (n, 2, 3); out (n, 6) as OUTPUTS."""
+    """`advance` over rate and force (n, 2, 3); out (n, 8) as OUTPUTS."""
     for i in range(rate.shape[0]):
         advance(memory, bench, rate[i], force[i], dt_s)
         for k in range(out.shape[1]):
@@ -185,36 +190,32 @@ class KneeAxis:
         self.parameters = parameters
         self._memory = allocate_memory(parameters)
         self._bench = prepare_bench(parameters)
+        self._reading = np.zeros((1, len(OUTPUTS)))
 
     def step(self, rate: NDArray[np.float64], force: NDArray[np.float64], dt_s: float) -> KneeReading:
         """Take one sample: rate (2, 3) rad/s, specific force (2, 3) m/s^2, dt_s after the sample before."""
-        advance(self._memory, self._bench, rate, force, dt_s)
+        # The same compiled code as for many: what is compiled apart need not agree to the last bit.
+        advance_many(self._memory, self._bench, rate[None], force[None], dt_s, self._reading)
         return self.reading()
 
     def run(self, rate: NDArray[np.float64], force: NDArray[np.float64], dt_s: float) -> NDArray[np.float64]:
-        """Take evenly spaced samples, rate and force (n, 2, 3); OUTPUTS of each as (n, 6)."""
+        """Take evenly spaced samples, rate and force (n, 2, 3); OUTPUTS of each as (n, 8)."""
         out = np.zeros((rate.shape[0], len(OUTPUTS)))
         advance_many(self._memory, self._bench, np.ascontiguousarray(rate), np.ascontiguousarray(force), dt_s, out)
+        if len(out):
+            self._reading = out[-1:].copy()
         return out
 
     def reading(self) -> KneeReading:
         """The reading of the last sample."""
-        flexion, std, is_valid, rate, axis_std, _ = self._bench.output.tolist()
-        knee = self._memory.knee[0]
-        datum = Datum.START
-        if knee["is_zero_set"] > 0.0:
-            datum = Datum.SET
-        elif knee["is_standing"] > 0.0:
-            datum = Datum.STANDING
-        return KneeReading(
-            flexion, std, is_valid > 0.0, rate, axis_std, bool(knee["is_sign_known"] > 0.0),
-            datum,
-        )  # fmt: skip
+        flexion, std, is_valid, rate, axis_std, _, is_sign_known, datum = self._reading[0].tolist()
+        return KneeReading(flexion, std, is_valid > 0.0, rate, axis_std, is_sign_known > 0.0, DATUMS[int(datum)])
 
     def declare_zero(self) -> None:
         """The pose of the last sample is 0 from now on."""
         knee = self._memory.knee[0]
         knee["zero"], knee["is_zero_set"] = knee["angle"], 1.0
+        self._reading[0, OUTPUTS.index("datum")] = DATUMS.index(Datum.SET)
 
     @property
     def axes(self) -> NDArray[np.float64]:

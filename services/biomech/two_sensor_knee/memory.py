@@ -74,7 +74,11 @@ POSTURE = np.dtype(
 """Running moments in motion: angle, height of the thigh's sensor over the shank's and, as `upright`, over the knee."""
 
 PARAMETERS = np.dtype([(field.name, np.float64) for field in fields(KneeAxisParameters)])
-OUTPUTS = ("flexion", "flexion_std", "is_valid", "flexion_rate", "axis_std", "flexion_from_sensor_axes")
+OUTPUTS = (
+    "flexion", "flexion_std", "is_valid", "flexion_rate", "axis_std", "flexion_from_sensor_axes", "is_sign_known",
+    "datum",
+)  # fmt: skip
+"""Columns of a run: rad and rad/s; `datum` counts as `knee_axis.Datum`."""
 
 
 class Memory(NamedTuple):

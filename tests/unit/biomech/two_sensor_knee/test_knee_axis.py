@@ -9,11 +9,10 @@ from scipy.spatial.transform import Rotation
 
 from services.bench.knee.legs import LegRecording, Sensors, cycling, record, seated_flexion, sit_to_stand, walking
 from services.biomech.two_sensor_knee.knee_axis import Datum, KneeAxis
-from services.biomech.two_sensor_knee.memory import OUTPUTS
 from services.biomech.two_sensor_knee.parameters import KneeAxisParameters
 
 RATE_HZ = 100.0
-FLEXION, STD, VALID, RATE, AXIS_STD, MOUNTED = range(len(OUTPUTS))
+FLEXION, STD, VALID, RATE, AXIS_STD = range(5)
 MOUNTINGS = [Rotation.random(2, rng=seed).as_matrix() for seed in range(3)]
 
 
