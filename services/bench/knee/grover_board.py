@@ -51,7 +51,7 @@ def _bias_rows() -> list[Row]:
     for is_planar in (True, False):
         for name in motions():
             errors = np.array([bias_errors(motions(c, is_planar=is_planar)[name], k) for k, c in enumerate(CADENCES)])
-            published, ours = np.median(errors, axis=0)
+            published, ours = np.median(errors, axis=0).tolist()
             title = f"{name}{'' if is_planar else ' with sway'}: bias after {LITERAL.debias_samples} samples, median"
             rows.append(
                 at_most(title, 100.0 * published, "%", 5.0) if is_planar else informative(title, 100.0 * published, "%")
