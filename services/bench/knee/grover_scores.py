@@ -99,7 +99,7 @@ class Cost(NamedTuple):
     simplified_states: int = 1
 
 
-def cost(samples: Sequence[PlanarSample], repeats: int = 7) -> Cost:
+def cost(samples: Sequence[PlanarSample], repeats: int = 25) -> Cost:
     """Fastest of several runs of both, in turn; the simplified one pays for learning its biases (table 1)."""
     dt_s = 1.0 / LITERAL.rate_hz
 

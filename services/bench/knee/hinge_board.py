@@ -152,7 +152,7 @@ def _peer_rows(recording: KneeRecording) -> list[Row]:
     return rows
 
 
-def cost_rows(recording: KneeRecording, repeats: int = 5) -> list[Row]:
+def cost_rows(recording: KneeRecording, repeats: int = 12) -> list[Row]:
     """Processor time of a sample, whole recordings at once and sample by sample."""
     dt_s, n = 1.0 / recording.rate_hz, len(recording.rate)
     rate, force = np.ascontiguousarray(recording.rate), np.ascontiguousarray(recording.force)

@@ -12,6 +12,8 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from services.flow.node import State
+
 
 @dataclass(frozen=True)
 class GroverParameters:
@@ -75,6 +77,14 @@ class AngleBiasFilter:
         self._p00, self._p01, self._p11 = (1.0 - gain_angle) * p00, (1.0 - gain_angle) * p01, p11 - gain_bias * p01
         return angle
 
+    def snapshot(self) -> list[float]:
+        """Everything that changes."""
+        return [self.angle, self.bias, self._p00, self._p01, self._p11]
+
+    def restore(self, state: list[float]) -> None:
+        """Go on from a snapshot."""
+        self.angle, self.bias, self._p00, self._p01, self._p11 = state
+
 
 class AngleFilter:
     """One state, the angle: eq. 23 for the thigh, eq. 24 for the knee."""
@@ -96,6 +106,14 @@ class AngleFilter:
         self._p = (1.0 - gain) * p
         return angle
 
+    def snapshot(self) -> list[float]:
+        """Everything that changes."""
+        return [self.angle, self._p]
+
+    def restore(self, state: list[float]) -> None:
+        """Go on from a snapshot."""
+        self.angle, self._p = state
+
 
 class ConventionalKnee:
     """Thigh and knee filters with a bias state each (section 3.2.1)."""
@@ -108,6 +126,15 @@ class ConventionalKnee:
         thigh_rate, thigh_tilt, shank_rate, shank_tilt = sample
         self.thigh.step(thigh_rate, thigh_tilt, dt_s)
         return self.knee.step(shank_rate - thigh_rate + self.thigh.bias, shank_tilt - thigh_tilt, dt_s)
+
+    def snapshot(self) -> State:
+        """Everything that changes, as JSON values."""
+        return {"thigh": self.thigh.snapshot(), "knee": self.knee.snapshot()}
+
+    def restore(self, state: State) -> None:
+        """Go on from a snapshot."""
+        self.thigh.restore(state["thigh"])
+        self.knee.restore(state["knee"])
 
 
 class SimplifiedKnee:
@@ -128,6 +155,21 @@ class SimplifiedKnee:
         thigh_rate -= self.thigh_bias
         self.thigh.step(thigh_rate, thigh_tilt, dt_s)
         return self.knee.step(shank_rate - self.shank_bias - thigh_rate, shank_tilt - thigh_tilt, dt_s)
+
+    def snapshot(self) -> State:
+        """Everything that changes, as JSON values."""
+        first = None if self._first is None else [list(pair) for pair in self._first]
+        return {
+            "thigh": self.thigh.snapshot(), "knee": self.knee.snapshot(),
+            "biases": [self.thigh_bias, self.shank_bias], "first": first,
+        }  # fmt: skip
+
+    def restore(self, state: State) -> None:
+        """Go on from a snapshot of a knee that learns from as many samples."""
+        self.thigh.restore(state["thigh"])
+        self.knee.restore(state["knee"])
+        self.thigh_bias, self.shank_bias = state["biases"]
+        self._first = None if state["first"] is None else [(thigh, shank) for thigh, shank in state["first"]]
 
     def _learn(self, first: list[tuple[float, float]], thigh_rate: float, shank_rate: float) -> None:
         first.append((thigh_rate, shank_rate))

@@ -1,5 +1,7 @@
 """The published band, equation by equation."""
 
+import json
+
 import numpy as np
 import pytest
 
@@ -79,6 +81,17 @@ def test_simplified_filter_waits_for_its_biases_and_then_agrees():
     assert estimator.thigh_bias == pytest.approx(0.02, abs=0.01)
     settled = np.array([angle for angle in angles[1100:] if angle is not None])
     assert np.abs(settled - knee[1100:]).max() < 0.06
+
+
+@pytest.mark.parametrize("kind", [ConventionalKnee, SimplifiedKnee])
+@pytest.mark.parametrize("cut", [400, 1200])
+def test_an_interrupted_run_goes_on_to_the_bit(kind, cut):
+    _, rows = samples(1500, 0.02, -0.01)
+    whole, first, second = kind(), kind(), kind()
+    expected = [whole.step(row, DT_S) for row in rows]
+    told = [first.step(row, DT_S) for row in rows[:cut]]
+    second.restore(json.loads(json.dumps(first.snapshot())))
+    assert told + [second.step(row, DT_S) for row in rows[cut:]] == expected
 
 
 def test_angles_near_half_a_turn_do_not_jump_round():
