@@ -1,5 +1,7 @@
 """Inertial samples as they leave ingest: SI units, sensor frame, one message per hub and tick (or few ticks)."""
 
+from typing import Any
+
 from pydantic import Field, model_validator
 
 from schemas.payload import Payload, SessionTime, Vector3
@@ -32,6 +34,12 @@ class ImuBatch(Payload):
 
     sensors: list[SensorSamples]
     marks: list[StandingMark] = Field(description="given since the message before, by any hub; nearly always none")
+
+    @model_validator(mode="before")
+    @classmethod
+    def _of_an_older_writer(cls, fields: Any) -> Any:
+        """Before marks existed nobody gave one."""
+        return {"marks": [], **fields} if isinstance(fields, dict) else fields
 
 
 class ReferenceBatch(Payload):

@@ -1,6 +1,8 @@
 """What estimation says of the body: joint states, the calibrated model and the picture of it for a screen."""
 
-from pydantic import Field
+from typing import Any
+
+from pydantic import Field, model_validator
 
 from schemas.payload import Payload, QuaternionWXYZ, SessionTime, Vector3
 from schemas.vocabulary import EventSource, Segment, SensorState, Side
@@ -64,6 +66,12 @@ class Calibration(Payload):
     sensors: list[SensorAlignment]
     events_from: dict[Side, EventSource] = Field(description="what tells the gait events of each leg")
     unused: dict[str, str] = Field(description="sensors that are not used, and why, by name")
+
+    @model_validator(mode="before")
+    @classmethod
+    def _of_an_older_writer(cls, fields: Any) -> Any:
+        """Earlier ones did not say what told the events, nor what was left out."""
+        return {"events_from": {}, "unused": {}, **fields} if isinstance(fields, dict) else fields
 
 
 class SegmentPose(Payload):

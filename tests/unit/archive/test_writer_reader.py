@@ -139,7 +139,7 @@ def test_a_folder_without_a_recording_is_a_typed_error(tmp_path):
 
 
 def test_messages_decode_or_say_why_not(recorded, tape):
-    good = b'{"sensors":[{"captured_ns":[1],"angular_velocity":[[0,0,0]],"specific_force":[[0,9.8,0]]}]}'
+    good = b'{"sensors":[{"captured_ns":[1],"angular_velocity":[[0,0,0]],"specific_force":[[0,9.8,0]]}],"marks":[]}'
     folder = recorded([tape.record(tape.hub, 0, payload=good), tape.record(tape.hub, 1, final=True)])
     message, end = open_recording(folder).messages()
     assert message.payload.sensors[0].specific_force == [[0, 9.8, 0]]
@@ -151,7 +151,7 @@ def test_messages_decode_or_say_why_not(recorded, tape):
 
 
 def test_any_mcap_reader_sees_named_json_channels_with_schemas(recorded, tape, description):
-    good = b'{"sensors":[{"captured_ns":[1],"angular_velocity":[[0,0,0]],"specific_force":[[0,9.8,0]]}]}'
+    good = b'{"sensors":[{"captured_ns":[1],"angular_velocity":[[0,0,0]],"specific_force":[[0,9.8,0]]}],"marks":[]}'
     folder = recorded([tape.record(tape.hub, 0, payload=good), tape.record(tape.hub, 1, final=True)])
     with (folder / "raw.mcap").open("rb") as file:
         reader = make_reader(file)
