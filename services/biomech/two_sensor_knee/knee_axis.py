@@ -195,13 +195,14 @@ class KneeAxis:
     def step(self, rate: NDArray[np.float64], force: NDArray[np.float64], dt_s: float) -> KneeReading:
         """Take one sample: rate (2, 3) rad/s, specific force (2, 3) m/s^2, dt_s after the sample before."""
         # The same compiled code as for many: what is compiled apart need not agree to the last bit.
-        advance_many(self._memory, self._bench, rate[None], force[None], dt_s, self._reading)
+        rates, forces = _plain(rate)[None], _plain(force)[None]
+        advance_many(self._memory, self._bench, rates, forces, float(dt_s), self._reading)
         return self.reading()
 
     def run(self, rate: NDArray[np.float64], force: NDArray[np.float64], dt_s: float) -> NDArray[np.float64]:
         """Take evenly spaced samples, rate and force (n, 2, 3); OUTPUTS of each as (n, 8)."""
         out = np.zeros((rate.shape[0], len(OUTPUTS)))
-        advance_many(self._memory, self._bench, np.ascontiguousarray(rate), np.ascontiguousarray(force), dt_s, out)
+        advance_many(self._memory, self._bench, _plain(rate), _plain(force), float(dt_s), out)
         if len(out):
             self._reading = out[-1:].copy()
         return out
@@ -239,3 +240,8 @@ class KneeAxis:
     def restore(self, state: State) -> None:
         """Go on from a snapshot."""
         unpack_memory(state, self._memory)
+
+
+def _plain(samples: NDArray[np.float64]) -> NDArray[np.float64]:
+    """The one layout that is compiled for: another would be compiled for half a minute."""
+    return np.ascontiguousarray(samples, dtype=np.float64)

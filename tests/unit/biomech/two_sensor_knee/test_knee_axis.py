@@ -120,6 +120,16 @@ def test_one_sample_at_a_time_gives_what_the_whole_gives():
     assert [r.is_valid for r in readings] == (whole[:, VALID] > 0.0).tolist()
 
 
+def test_other_layouts_of_a_sample_are_taken_as_they_are():
+    leg = record(walking(start_s=0.5), 6.0, RATE_HZ)
+    one, other = KneeAxis(), KneeAxis()
+    for rate, force in zip(leg.rate, leg.force, strict=True):
+        expected = one.step(rate, force, 1.0 / RATE_HZ)
+        told = other.step(np.asfortranarray(rate), force.astype(np.float32), 1.0 / RATE_HZ)
+    assert told.flexion == pytest.approx(expected.flexion, abs=1e-3)
+    assert told.is_valid is expected.is_valid
+
+
 @pytest.mark.parametrize("value", [np.nan, np.inf, 1e9])
 def test_unusable_samples_are_not_valid_and_leave_no_trace(value):
     leg = record(walking(), 25.0, RATE_HZ)
