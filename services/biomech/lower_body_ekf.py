@@ -185,6 +185,12 @@ class LowerBodyEkf:
         self.padded_covariance[:] = 0.0
         self.settle()
 
+    def shift(self, way: Array) -> None:
+        """Move the joints by way (n,), rad, whatever drives them."""
+        self.x[0] += way
+        self.companions.x[:, 0] += way
+        self.estimate[0] += way
+
     def loosen(self, joints: Sequence[int]) -> None:
         """Make some joints as uncertain as at the start, so that the next samples may move them."""
         rotations = len(self.model.dofs) - self.model.first_rotation

@@ -80,21 +80,24 @@ class Coasting:
         samples[filled, RATE] = expected.value[1, : self._sensed].reshape(-1, 3)[filled]
         return Tick(tick.captured_ns, samples, tick.fresh | filled)
 
-    def lead(self, ekf: LowerBodyEkf, dt_s: float) -> None:
-        """After the filter took the tick: lead the joints of the followed segments, and say what they are worth."""
+    def lead(self, ekf: LowerBodyEkf, dt_s: float) -> Array:
+        """After the filter took the tick: lead the joints of the followed segments, and say what they are worth.
+
+        Returns the way (n,) by which joints were led, rad.
+        """
+        led = np.zeros(len(self.deviation))
         blind = self._blind(self.followed)
         self.deviation[~blind] *= exp(-dt_s / self.parameters.fade_s)
         if not self.followed:
-            return
+            return led
         expected = self._shape.expect(self._phase + self._frequency * dt_s)
         joints = blind & expected.known[self._sensed :]
         joints[self._model.first_rotation] = False  # the heading of the body has no place in a stride
         share = 1.0 - exp(-dt_s / self.parameters.lead_s)
-        way = share * (expected.value[0, self._sensed :] - ekf.estimate[0])[joints]
-        ekf.x[0, joints] += way
-        ekf.companions.x[:, 0, joints] += way
-        ekf.estimate[0, joints] += way
+        led[joints] = share * (expected.value[0, self._sensed :] - ekf.estimate[0])[joints]
+        ekf.shift(led)
         self.deviation[joints] += share * (expected.std[0, self._sensed :] - self.deviation)[joints]
+        return led
 
     def learn(
         self, reading: RhythmReading, dt_s: float, tick: Tick, estimate: Array, doubtful: frozenset[Segment]

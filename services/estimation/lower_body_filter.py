@@ -7,15 +7,17 @@ import numpy as np
 from numpy.typing import NDArray
 
 from schemas.session import SensorDescription, SessionDescription
-from schemas.vocabulary import LOWER_BODY, Segment
-from services.biomech.lower_body import PARENT_SEGMENT, SEGMENTS, LowerBodyModel, SensorMount, segment_of
+from schemas.vocabulary import Segment
+from services.biomech.lower_body import SEGMENTS, LowerBodyModel, SensorMount
 from services.biomech.lower_body_ekf import LowerBodyEkf
 from services.biomech.rhythm.reading import RhythmReading
 from services.biomech.rhythm.trusted import TrustedRhythm
 from services.estimation.alignment import Alignment
 from services.estimation.coasting import Coasting
 from services.estimation.drivers import companions_of, driver_of
+from services.estimation.gap_filling import GapFilling, Step
 from services.estimation.parameters import FilterParameters
+from services.estimation.resting_joints import rest_variances, valid_without
 from services.estimation.samples import Tick
 from services.estimation.unmodelled import unmodelled_deviations
 from services.flow.node import State, pack_array, unpack_array
@@ -77,6 +79,8 @@ class LowerBodyFilter:
             parameters.noise,
             companions_of(description.estimator, parameters, RHYTHM_CHANNELS, rate_hz),
         )
+        longest_s = parameters.silent_after_s if parameters.closes_gaps else 0.0
+        self._gaps = GapFilling(self.ekf, [sensor.rate_hz for sensor in sensors], longest_s)
         self._rhythm = TrustedRhythm(len(RHYTHM_CHANNELS), parameters.rhythm)
         self._rhythm_joints = np.array([self.model.names.index(name) for name in RHYTHM_CHANNELS])
         self._driver, self._driver_joints = driver_of(description.estimator, self.model, self._rhythm, RHYTHM_CHANNELS)
@@ -125,7 +129,7 @@ class LowerBodyFilter:
         """What changes when a sensor falls silent or comes back."""
         for segment in sorted(self.unseen - unseen):
             if segment not in self._followed:
-                self.ekf.loosen(self.model.joints_of(segment))
+                self._loosen(segment)
             if self._last_ns is not None:
                 self._returned_ns[segment] = now_ns
         self.unseen = unseen
@@ -142,12 +146,7 @@ class LowerBodyFilter:
             self.observed = self._observed_without(missing)
 
     def _valid_without(self, missing: frozenset[Segment]) -> list[bool]:
-        """Per LOWER_BODY dof: both segments of the joint are seen, and the model has the dof."""
-        joints = [segment_of(dof) for dof in LOWER_BODY]
-        return [
-            bool(index >= 0) and not {segment, PARENT_SEGMENT.get(segment, segment)} & missing
-            for segment, index in zip(joints, self.model.reported, strict=True)
-        ]
+        return valid_without(self.model, missing)
 
     @staticmethod
     def _observed_without(missing: frozenset[Segment]) -> list[Segment]:
@@ -159,6 +158,8 @@ class LowerBodyFilter:
             first_ns, steps = self._last_ns, self._coasting.steps(self._last_ns, tick)
             for step in steps:
                 self._advance(step, self._coasting)
+            if steps:
+                self._gaps.clear()
             if steps and not self._coasting.realign(self.ekf, tick, (tick.captured_ns - first_ns) * 1e-9):
                 self.ekf.settle()
         return self._row(tick.captured_ns, self._advance(tick, self._coasting))
@@ -167,6 +168,7 @@ class LowerBodyFilter:
         dt_s = 0.0 if self._last_ns is None else (tick.captured_ns - self._last_ns) / 1e9
         if dt_s > self.parameters.longest_step_s:
             self.ekf.settle()
+            self._gaps.clear()
             self._jerk[:] = 0.0
             self._returned_ns = dict.fromkeys(SEGMENTS, tick.captured_ns)
         if self._last_ns is None and self._starts_moving:
@@ -177,17 +179,28 @@ class LowerBodyFilter:
         self._judge(tick.captured_ns)
         step_s = dt_s if dt_s <= self.parameters.longest_step_s else 0.0
         filled = tick if coasting is None else self._follow(coasting, tick, step_s)
-        self.ekf.advance(step_s, filled.samples, filled.fresh & self._aligned, self._jerk, self._rest)
+        self._fuse(filled, tick.fresh, step_s)
         if self._may_diverge and not self.ekf.is_sound():
             self._start_over(tick.captured_ns)
         if coasting is not None:
-            coasting.lead(self.ekf, step_s)
+            self._gaps.lead(coasting.lead(self.ekf, step_s))
         reading = self._follow_rhythm(dt_s)
         if coasting is not None:
             for segment in coasting.learn(reading, dt_s, tick, self.ekf.estimate, self._missing):
-                self.ekf.loosen(self.model.joints_of(segment))
+                self._loosen(segment)
         self._last_ns = tick.captured_ns
         return reading
+
+    def _fuse(self, tick: Tick, measured: NDArray[np.bool_], dt_s: float) -> None:
+        """Advance the filter, and close gaps from both ends."""
+        fresh = tick.fresh & self._aligned
+        driven, unled = self.ekf.companions.jerk, np.zeros_like(self._jerk)
+        step = Step(tick.captured_ns, dt_s, tick.samples, fresh, self._jerk, driven, unled)
+        self._gaps.advance(step, measured & self._aligned, self._rest)
+
+    def _loosen(self, segment: Segment) -> None:
+        self.ekf.loosen(self.model.joints_of(segment))
+        self._gaps.clear()
 
     def _follow(self, coasting: Coasting, tick: Tick, dt_s: float) -> Tick:
         """The tick with stand-ins for silent sensors; their joints are not drawn to zero."""
@@ -200,27 +213,13 @@ class LowerBodyFilter:
     def _start_over(self, now_ns: int) -> None:
         """The estimate is lost: begin again from upright, in doubt like after a gap."""
         self.ekf.start_over()
+        self._gaps.clear()
         self._jerk[:] = 0.0
         self._returned_ns = dict.fromkeys(SEGMENTS, now_ns)
         self._judge(now_ns)
 
     def _rest_without(self, unseen: frozenset[Segment]) -> Array:
-        """Variances of the pull to zero: soft knees always, and every joint below a segment that is not seen.
-
-        Without it the variance of an unseen joint grows without bound. Its heading is left free: zero means nothing.
-        """
-        p, rest = self.parameters, np.zeros((3, len(self.model.dofs)))
-        for segment in sorted(unseen):
-            worn = segment in self._worn
-            position_std, velocity_std = (
-                (p.rest_position_std, p.rest_velocity_std) if worn else (p.unworn_std, p.unworn_std)
-            )
-            stds = np.array([[position_std], [velocity_std], [p.rest_acceleration_std]])
-            rest[:, self.model.joints_of(segment)] = stds**2
-        if Segment.PELVIS in unseen:
-            rest[0, self.model.first_rotation] = 0.0
-        rest[0, self.model.soft] = p.noise.soft_knee_std**2
-        return rest
+        return rest_variances(self.model, self.parameters, self._worn, unseen)
 
     @property
     def rhythm(self) -> TrustedRhythm:
@@ -262,6 +261,7 @@ class LowerBodyFilter:
             "returned_ns": {segment.value: ns for segment, ns in sorted(self._returned_ns.items())},
             "rhythm": self._rhythm.snapshot(),
             "coasting": None if self._coasting is None else self._coasting.snapshot(),
+            "gaps": self._gaps.snapshot(),
             "driver": self._driver.snapshot() if self._driver is not None and driven else None,
         }
 
@@ -282,6 +282,7 @@ class LowerBodyFilter:
         self.valid = self._valid_without(self._missing)
         self._rest = self._rest_without(self.unseen - self._followed)
         self.observed = self._observed_without(self._missing)
+        self._gaps.restore(state["gaps"])
         self._rhythm.restore(state["rhythm"])
         if self._driver is not None and state["driver"] is not None:
             self._driver.restore(state["driver"])

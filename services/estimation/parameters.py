@@ -158,6 +158,7 @@ class FilterParameters:
     judges: Literal["segment", "leg", "body"] = "segment"  # whose gyroscopes decide whether a joint follows the rhythm
     unmodelled: UnmodelledErrors = field(default_factory=UnmodelledErrors)
     calm_share: float = 0.1  # of the process noise that a third state has once the rhythm is learned; 1 runs none
+    closes_gaps: bool = True  # of up to `silent_after_s`, from both ends; see gap_filling.py
     coasts: bool = True  # `rhythmic_ekf` goes on without a silent sensor as the strides before tell
     coasting: CoastingParameters = field(default_factory=CoastingParameters)
     longest_jerk: float = 2000.0  # rad/s^3, bound on what a rhythm may feed; knee jerk in walking stays below 1500
@@ -167,6 +168,7 @@ PUBLISHED = FilterParameters(
     measurement=MeasurementModel(gyro_sees_position=True, accel_sees_motion=True),
     noise=NoiseModel(accel_std=1.0, yaw_std=0.1, impact_rate=NO_BOUND),
     soft_knees=False,
+    closes_gaps=False,
     sample_delay=0.0,
 )
 """The measurement model as published (Joukov eq. 10-14, 22): full Jacobian, dynamic accelerometer, hinge knees, yaw
