@@ -45,7 +45,7 @@ export class LiveView {
     this.markLength = el(
       "select",
       { "aria-label": "Seconds of standing" },
-      ...MARK_LENGTHS.map((seconds) => el("option", { value: seconds }, `${seconds} s`)),
+      ...MARK_LENGTHS.map((seconds) => el("option", { value: seconds }, `last ${seconds} s`)),
     );
     this.markButton = el(
       "button",
