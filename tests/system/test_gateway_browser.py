@@ -163,9 +163,9 @@ def test_with_reduced_motion_the_body_is_drawn_on_paper(site):
     with browsers.open_browser(1366, 768, "--force-prefers-reduced-motion") as page:
         start(page, site.url, "Walk, slow")
         wait(page, lambda: text(page, ".session-head .chip") == "Live", "the session is live")
-        line = page.find_elements(By.CSS_SELECTOR, ".stage svg line")[-1]
+        lines = wait(page, lambda: page.find_elements(By.CSS_SELECTOR, ".stage svg line"), "the figure is drawn")
         places = set()
-        wait(page, lambda: places.add(line.get_attribute("y2")) or len(places) > 3, "the figure moves")
+        wait(page, lambda: places.add(lines[-1].get_attribute("y2")) or len(places) > 3, "the figure moves")
         assert page.find_elements(By.CSS_SELECTOR, ".stage canvas") == []
         assert browsers.complaints(page) == []
 
