@@ -53,7 +53,7 @@ export class LiveView {
       "Standing now",
     );
     this.stopButton = el("button", { class: "danger", type: "button", onclick: () => this.stop() }, "Stop");
-    this.title = el("h1", {}, this.session.title);
+    this.title = el("h1", { title: this.session.title }, this.session.title);
     this.stage = el("div", { class: "stage" });
     this.sensorList = el("ul", { class: "sensors" });
     this.charts = JOINTS.map((joint) => chartPanel(joint));
@@ -68,9 +68,7 @@ export class LiveView {
         this.ageText,
         el("span", { class: "spring" }),
         this.link.node,
-        this.markLength,
-        this.markButton,
-        this.stopButton,
+        el("span", { class: "actions" }, this.markLength, this.markButton, this.stopButton),
       ),
       this.advice,
       el(
