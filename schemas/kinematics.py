@@ -5,7 +5,7 @@ from typing import Any
 from pydantic import Field, model_validator
 
 from schemas.payload import Payload, QuaternionWXYZ, SessionTime, Vector3
-from schemas.vocabulary import EventSource, Segment, SensorState, Side
+from schemas.vocabulary import EventSource, Misplacement, Segment, SensorState, Side
 
 
 class JointState(Payload):
@@ -66,12 +66,13 @@ class Calibration(Payload):
     sensors: list[SensorAlignment]
     events_from: dict[Side, EventSource] = Field(description="what tells the gait events of each leg")
     unused: dict[str, str] = Field(description="sensors that are not used, and why, by name")
+    misplaced: dict[Side, list[Misplacement]] = Field(description="legs whose sensors are worn otherwise than declared")
 
     @model_validator(mode="before")
     @classmethod
     def _of_an_older_writer(cls, fields: Any) -> Any:
-        """Earlier ones did not say what told the events, nor what was left out."""
-        return {"events_from": {}, "unused": {}, **fields} if isinstance(fields, dict) else fields
+        """Earlier ones did not say what told the events, what was left out, nor what was worn otherwise."""
+        return {"events_from": {}, "unused": {}, "misplaced": {}, **fields} if isinstance(fields, dict) else fields
 
 
 class SegmentPose(Payload):

@@ -7,7 +7,7 @@ from pydantic import Field, model_validator
 
 from schemas.payload import Payload, Vector3
 from schemas.rhythm import KnownRhythm
-from schemas.vocabulary import Segment
+from schemas.vocabulary import Segment, Task
 
 
 class Placement(StrEnum):
@@ -27,10 +27,19 @@ class SensorDescription(Payload):
     segment: Segment
     rate_hz: float = Field(gt=0, description="nominal sample rate, Hz")
     outward_axis: Vector3 = Field(description="unit vector in the sensor frame that points out of the skin")
+    upward_axis: Vector3 | None = Field(
+        description="unit vector in the sensor frame that points up the segment when worn as intended; null: any"
+    )
     placement: Placement
     position_in_segment: Vector3 | None = Field(
         description="m from the segment's proximal joint, segment frame; null when unknown"
     )
+
+    @model_validator(mode="before")
+    @classmethod
+    def _of_an_older_writer(cls, fields: Any) -> Any:
+        """Earlier ones did not say which way up a sensor is worn."""
+        return {"upward_axis": None, **fields} if isinstance(fields, dict) else fields
 
 
 class HubDescription(Payload):
@@ -78,6 +87,7 @@ class SessionDescription(Payload):
     started_unix_ns: int = Field(description="ns since the Unix epoch at session time zero")
     origin: Literal["recording", "archive", "synthetic", "device"]
     protocol: str
+    task: Task = Field(description="what the person is asked to do")
     estimator: str = Field(description="a name of vocabulary.ESTIMATORS")
     walk_path: WalkPath = Field(description="turning: anywhere; straight: treadmill, in place, corridor without a turn")
     hubs: list[HubDescription]
@@ -93,8 +103,9 @@ class SessionDescription(Payload):
     @model_validator(mode="before")
     @classmethod
     def _of_an_older_writer(cls, fields: Any) -> Any:
-        """A session from before these fields existed knew no rhythm, and anybody might turn."""
-        return {"known_rhythms": [], "walk_path": "turning", **fields} if isinstance(fields, dict) else fields
+        """A session from before these fields existed knew no rhythm, was a walk, and anybody might turn."""
+        before = {"known_rhythms": [], "walk_path": "turning", "task": Task.WALK}
+        return {**before, **fields} if isinstance(fields, dict) else fields
 
     @model_validator(mode="after")
     def _one_of_each_kind(self) -> Self:

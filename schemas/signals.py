@@ -13,6 +13,7 @@ from schemas.metrics import SessionMetrics
 from schemas.payload import Payload
 from schemas.rhythm import LearnedRhythm, Rhythm
 from schemas.session import SessionDescription
+from schemas.tasks import Repetition, TaskPhase
 
 
 class Quality(StrEnum):
@@ -62,6 +63,12 @@ GAIT_EVENT = Signal(
     "gait_event", GaitEvent, "segmentation", Quality.LOSSLESS, "derived", None, "initial contact and toe-off"
 )
 STRIDE = Signal("stride", Stride, "segmentation", Quality.LOSSLESS, "derived", None, "one stride with its curves")
+TASK_PHASE = Signal(
+    "task_phase", TaskPhase, "segmentation", Quality.LOSSLESS, "derived", None, "phases of a timed test"
+)
+REPETITION = Signal(
+    "repetition", Repetition, "segmentation", Quality.LOSSLESS, "derived", None, "repetitions of an exercise"
+)
 METRICS = Signal(
     "metrics", SessionMetrics, "metrics", Quality.LOSSLESS, "derived", None, "the session in numbers so far"
 )
@@ -74,7 +81,7 @@ PROGRESS = Signal("progress", Progress, "every consumer", Quality.LIVE, None, 10
 
 SIGNALS: tuple[Signal, ...] = (
     IMU, REFERENCE, SESSION, CALIBRATION, JOINT_STATE, RHYTHM, LEARNED_RHYTHM, SEGMENT_MOTION, LIVE_POSE,
-    GAIT_EVENT, STRIDE, METRICS, GAP, HEALTH, CHECKPOINT, PROGRESS,
+    GAIT_EVENT, STRIDE, TASK_PHASE, REPETITION, METRICS, GAP, HEALTH, CHECKPOINT, PROGRESS,
 )  # fmt: skip
 BY_NAME: dict[str, Signal] = {signal.name: signal for signal in SIGNALS}
 

@@ -50,6 +50,33 @@ class EventSource(StrEnum):
     NOTHING = "nothing"
 
 
+class Task(StrEnum):
+    """What a person is asked to do; decides what is looked for beside gait."""
+
+    WALK = "walk"
+    TIMED_UP_AND_GO = "timed_up_and_go"
+    KNEE_FLEXION = "knee_flexion"
+
+
+class TaskPhaseKind(StrEnum):
+    """Parts of a timed up and go, in the order in which they are done."""
+
+    SIT_TO_STAND = "sit_to_stand"
+    WALK_OUT = "walk_out"
+    TURN = "turn"
+    WALK_BACK = "walk_back"
+    TURN_TO_SIT = "turn_to_sit"
+
+
+class Misplacement(StrEnum):
+    """How a sensor is worn otherwise than declared."""
+
+    SWAPPED = "swapped"
+    THIGH_UPSIDE_DOWN = "thigh_upside_down"
+    SHANK_UPSIDE_DOWN = "shank_upside_down"
+    OTHER_LEG = "other_leg"
+
+
 class SensorState(StrEnum):
     """What a therapist is told about a sensor."""
 
@@ -107,10 +134,14 @@ The three translations of the pelvis are not observable from inertial sensors an
 BODY_MODELS: dict[str, tuple[DegreeOfFreedom, ...]] = {"lower_body": LOWER_BODY}
 """Model name (as in a joint_state message) -> its degrees of freedom, in order."""
 
-ESTIMATORS: dict[str, str] = {
+LOWER_BODY_ESTIMATORS: dict[str, str] = {
     "ekf": "EKF on joint position, velocity and acceleration",
     "rhythmic_ekf": "the same with the jerk of a rhythm model that knows whether it is locked",
     "rhythmic_ekf_joukov": "the same with the canonical dynamical system as printed (Joukov eq. 15-21)",
     "joukov_published": "as published throughout: that system, and the measurement model as printed (Joukov eq. 10-22)",
 }
-"""Selectable estimators, by name: from the plain filter up to ours, then back to the published one part by part."""
+"""Estimators of the lower body, by name: from the plain filter up to ours, then back to the published one part by
+part."""
+
+ESTIMATORS: dict[str, str] = LOWER_BODY_ESTIMATORS
+"""All selectable estimators, by name."""

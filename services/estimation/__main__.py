@@ -3,8 +3,8 @@
 import sys
 
 from services.bus.runner import run_node_service
+from services.estimation.lower_body.warm_up import warm_up
 from services.estimation.node import build
-from services.estimation.warm_up import warm_up
 
 if __name__ == "__main__":
     warm_up()

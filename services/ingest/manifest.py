@@ -8,7 +8,7 @@ from typing import Annotated, Literal
 from pydantic import BaseModel, ConfigDict, Field, ValidationError
 
 from schemas.session import Anthropometry, Placement, WalkPath
-from schemas.vocabulary import ESTIMATORS, Segment
+from schemas.vocabulary import ESTIMATORS, Segment, Task
 from services.ingest.axes import Axes, rotation_from_axes
 from services.ingest.errors import InvalidManifest, MissingFile, UnknownSegment, UnreadableFile
 from services.ingest.units import reference_unit, scale_to_si
@@ -67,6 +67,7 @@ class SensorEntry(ImuEntry):
     name: Annotated[str, Field(pattern=r"^[a-z0-9_]{1,40}$")]
     segment: str
     outward_axis: Numbers3
+    upward_axis: Numbers3 | None = None
     placement: Placement = Placement.UNKNOWN
     position_in_segment: Numbers3 | None = None
     rate_hz: Rate | None = None
@@ -145,6 +146,7 @@ class Manifest(Entry):
 
     title: str
     protocol: str = ""
+    task: Task = Task.WALK
     estimator: str = "rhythmic_ekf"
     walk_path: WalkPath = "turning"
     data: str = "."
@@ -206,6 +208,8 @@ def _check_unique(where: str, what: str, names: list[str]) -> None:
 def _check_sensor(manifest: Manifest, sensor: SensorEntry, where: str) -> None:
     if sensor.segment not in list(Segment):
         raise UnknownSegment(f"{where}: segment {sensor.segment!r} is none of {', '.join(Segment)}")
+    if sensor.upward_axis is not None and sum(value**2 for value in sensor.upward_axis) < 1e-6:
+        raise InvalidManifest(f"{where}: upward_axis must not be zero; name the axis that points up, or leave it out")
     if sum(value**2 for value in sensor.outward_axis) < 1e-6:
         raise InvalidManifest(f"{where}: outward_axis must not be zero; name the sensor axis that points off the skin")
     if sensor.file is None and manifest.imu.file is None:

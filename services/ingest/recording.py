@@ -61,6 +61,7 @@ class Recording:
             started_unix_ns=identity.started_unix_ns if started is None else round(started.timestamp() * 1e9),
             origin="recording",
             protocol=manifest.protocol,
+            task=manifest.task,
             estimator=identity.estimator or manifest.estimator,
             walk_path=identity.walk_path or manifest.walk_path,
             hubs=[
@@ -104,12 +105,17 @@ def _fastest(manifest: Manifest, hub: HubEntry) -> float:
 
 
 def _described(manifest: Manifest, sensor: SensorEntry) -> SensorDescription:
-    outward = np.array(sensor.outward_axis)
     return SensorDescription(
         name=sensor.name,
         segment=Segment(sensor.segment),
         rate_hz=sensor.rate_hz or manifest.rate_hz,
-        outward_axis=(outward / np.linalg.norm(outward)).tolist(),
+        outward_axis=_unit(sensor.outward_axis),
+        upward_axis=None if sensor.upward_axis is None else _unit(sensor.upward_axis),
         placement=sensor.placement,
         position_in_segment=sensor.position_in_segment,
     )
+
+
+def _unit(direction: list[float]) -> list[float]:
+    axis = np.array(direction)
+    return list((axis / np.linalg.norm(axis)).tolist())

@@ -5,7 +5,7 @@ from schemas.health import Rejection
 from schemas.metrics import SessionMetrics
 from schemas.rhythm import LearnedRhythm
 from schemas.session import SessionDescription
-from schemas.signals import LEARNED_RHYTHM, METRICS, STRIDE, Signal
+from schemas.signals import LEARNED_RHYTHM, METRICS, REPETITION, STRIDE, TASK_PHASE, Signal
 from schemas.vocabulary import Side
 from services.flow.message import Message, Output, Stream
 from services.flow.node import Node, State
@@ -24,7 +24,12 @@ class MetricsNode:
     """
 
     outputs: tuple[Signal, ...] = (METRICS,)
-    streams: tuple[Stream, ...] = (Stream(STRIDE, "segmentation"), Stream(LEARNED_RHYTHM, "estimation"))
+    streams: tuple[Stream, ...] = (
+        Stream(STRIDE, "segmentation"),
+        Stream(LEARNED_RHYTHM, "estimation"),
+        Stream(TASK_PHASE, "segmentation"),
+        Stream(REPETITION, "segmentation"),
+    )
 
     def __init__(
         self,

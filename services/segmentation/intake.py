@@ -11,7 +11,7 @@ from schemas.rhythm import Rhythm
 from schemas.signals import JOINT_STATE, RHYTHM, SEGMENT_MOTION
 from services.flow.message import Stream
 from services.flow.node import State
-from services.segmentation.history import DOFS, Batch
+from services.segmentation.batch import DOFS, Batch
 
 Array = NDArray[np.float64]
 
@@ -37,8 +37,8 @@ class Intake:
         self._newest_ns = -1
         self._rejected: dict[tuple[str, Reason], int] = {}
 
-    def take(self, joints: JointState, rhythm: Rhythm | None) -> tuple[Batch, Array] | None:
-        """The usable samples of a message and their velocities (n, 15) in rad/s; None when there are none."""
+    def take(self, joints: JointState, rhythm: Rhythm | None) -> Batch | None:
+        """The usable samples of a message; None when there are none."""
         rows = len(joints.captured_ns)
         tables = _tables(joints)
         if tables is None:
@@ -54,7 +54,8 @@ class Intake:
         self._newest_ns = int(captured_ns[use][-1])
         position, velocity, std = tables[:, use]
         phase = self._phase(rhythm, rows)[use]
-        return Batch(captured_ns[use], position, phase, std, np.array(joints.valid)), velocity
+        valid, observed = np.array(joints.valid), frozenset(joints.observed)
+        return Batch(captured_ns[use], position, velocity, phase, std, valid, observed)
 
     def refuse_motion(self, count: int) -> None:
         """Count samples of lone segments that can not be used."""

@@ -1,50 +1,59 @@
-"""From joint angles and rhythm, or from the motion of lone segments, to gait events and strides."""
+"""Brings the streams of estimation together and hands them to the segmenters that the session's task needs."""
 
-from dataclasses import replace
+from typing import Protocol
 
-from schemas.gait import GaitEvent
 from schemas.health import Rejection
 from schemas.kinematics import JointState, SegmentMotion
 from schemas.rhythm import Rhythm
 from schemas.session import SessionDescription
-from schemas.signals import GAIT_EVENT, STRIDE, Signal
-from schemas.vocabulary import EventSource
-from services.biomech.event_sources import event_sources, lone_segments, worn_segments
+from schemas.signals import GAIT_EVENT, REPETITION, STRIDE, TASK_PHASE, Signal
+from services.biomech.event_sources import lone_segments, worn_segments
 from services.flow.message import Message, Output, Stream
 from services.flow.node import Node, State
-from services.segmentation.history import History
+from services.segmentation.batch import Batch
+from services.segmentation.gait.segmenter import GaitSegmenter
 from services.segmentation.intake import JOINTS_FROM, MOTION_FROM, RHYTHM_FROM, Intake
-from services.segmentation.leg_kinematics import SIDES, leg_motion
-from services.segmentation.leg_watch import LegInstant, LegWatch
 from services.segmentation.pairing import Pairing, Together
 from services.segmentation.parameters import SegmentationParameters
-from services.segmentation.strides import GAP, SENSOR_MISSING, Flaw, StrideAssembler
 
-SECOND_NS = 1_000_000_000
 DEFAULTS = SegmentationParameters()
 
 
-class SegmentationNode:
-    """Events as they are recognised, strides once they are complete."""
+class Segmenter(Protocol):
+    """What one kind of segmentation offers the node. Samples come in order; how they were batched decides nothing."""
 
-    outputs: tuple[Signal, ...] = (GAIT_EVENT, STRIDE)
+    def take_motion(self, motion: SegmentMotion | None) -> int:
+        """The motion of lone segments at the samples that come next. Returns how many of its samples are unusable."""
+
+    def take(self, batch: Batch) -> list[Output]:
+        """What these samples lead to."""
+
+    def finish(self) -> list[Output]:
+        """What still waited."""
+
+    def snapshot(self) -> State:
+        """Everything that changes."""
+
+    def restore(self, state: State) -> None:
+        """Go on from a snapshot."""
+
+
+def segmenters(description: SessionDescription, parameters: SegmentationParameters) -> dict[str, Segmenter]:
+    """Those that the task of a session needs, by name."""
+    return {"gait": GaitSegmenter(description, parameters)}
+
+
+class SegmentationNode:
+    """One session: what each segmenter finds, in the order of the segmenters."""
+
+    outputs: tuple[Signal, ...] = (GAIT_EVENT, STRIDE, TASK_PHASE, REPETITION)
 
     def __init__(self, description: SessionDescription, parameters: SegmentationParameters = DEFAULTS) -> None:
-        worn = worn_segments(description.hubs)
-        sources, with_motion = event_sources(worn), bool(lone_segments(worn))
-        if EventSource.LOWER_BACK in sources.values():
-            parameters = replace(parameters, history_margin_s=parameters.back_history_margin_s)
-        self._parameters = parameters
-        self._body = description.anthropometry
+        with_motion = bool(lone_segments(worn_segments(description.hubs)))
         self.streams: tuple[Stream, ...] = (JOINTS_FROM, RHYTHM_FROM, MOTION_FROM)[: 3 if with_motion else 2]
         self._intake = Intake()
         self._pairing = Pairing(with_motion=with_motion)
-        self._history = History()
-        self._strides = StrideAssembler(parameters, self._body, self._history)
-        self._legs = LegWatch(sources, parameters)
-        self._seen = [False, False]
-        self._last_ns: int | None = None
-        self._still_since_ns: int | None = None
+        self._segmenters = segmenters(description, parameters)
 
     def step(self, message: Message) -> list[Output]:
         """Take a message of any of the streams."""
@@ -60,71 +69,17 @@ class SegmentationNode:
         return [output for together in complete for output in self._take(together)]
 
     def finish(self) -> list[Output]:
-        """The strides that still waited."""
+        """What still waited."""
         outputs = [output for together in self._pairing.flush() for output in self._take(together)]
-        now_ns = self._last_ns or 0
-        return outputs + [Output(STRIDE, now_ns, stride) for stride in self._strides.release(None)]
+        return outputs + [output for segmenter in self._segmenters.values() for output in segmenter.finish()]
 
     def _take(self, together: Together) -> list[Output]:
-        joints = together.joints
-        self._intake.refuse_motion(self._legs.lone.take(together.motion))
-        kept = self._intake.take(joints, together.rhythm)
-        if kept is None:
+        refused = [segmenter.take_motion(together.motion) for segmenter in self._segmenters.values()]
+        self._intake.refuse_motion(max(refused))
+        batch = self._intake.take(together.joints, together.rhythm)
+        if batch is None:
             return []
-        batch, velocity = kept
-        motion = leg_motion(batch.position, velocity, self._body)
-        in_joints = self._legs.in_joints(joints)
-        outputs: list[Output] = []
-        for i, captured_ns in enumerate(batch.captured_ns.tolist()):
-            if self._last_ns is not None and captured_ns // SECOND_NS != self._last_ns // SECOND_NS:
-                self._strides.forget(captured_ns)
-            self._history.append(batch, i)
-            rates, forward = motion.shank_rate[i].tolist(), motion.ankle[0, i].tolist()
-            outputs += self._sample(captured_ns, self._legs.look(captured_ns, in_joints, rates, forward))
-        return outputs
-
-    def _sample(self, captured_ns: int, legs: list[LegInstant]) -> list[Output]:
-        self._note_gap(captured_ns)
-        self._note_sight(captured_ns, [leg.is_seen for leg in legs])
-        self._note_pause(captured_ns, legs)
-        outputs: list[Output] = []
-        for side, event in self._legs.detect(captured_ns, legs):
-            self._strides.add_event(side, event)
-            payload = GaitEvent(kind=event.kind, side=side, captured_ns=event.captured_ns, time_std_s=event.std_s)
-            outputs.append(Output(GAIT_EVENT, captured_ns, payload))
-        self._last_ns = captured_ns
-        return outputs + [Output(STRIDE, captured_ns, stride) for stride in self._strides.release(captured_ns)]
-
-    def _note_gap(self, captured_ns: int) -> None:
-        last_ns = self._last_ns
-        if last_ns is None or captured_ns - last_ns <= self._parameters.longest_gap_s * 1e9:
-            return
-        for leg, side in enumerate(SIDES):
-            self._strides.add_flaw(side, Flaw(last_ns, captured_ns, GAP))
-            self._legs.interrupt(leg)
-
-    def _note_sight(self, captured_ns: int, seen: list[bool]) -> None:
-        for leg, side in enumerate(SIDES):
-            if seen[leg] == self._seen[leg] and self._last_ns is not None:
-                continue
-            flaws = self._strides.legs[side].flaws
-            if not seen[leg]:
-                self._strides.add_flaw(side, Flaw(captured_ns, None, SENSOR_MISSING))
-                self._legs.interrupt(leg)
-            elif flaws and flaws[-1].until_ns is None:
-                flaws[-1].until_ns = captured_ns
-        self._seen = seen
-
-    def _note_pause(self, captured_ns: int, legs: list[LegInstant]) -> None:
-        visible = [leg for leg in legs if leg.is_seen]
-        if visible and all(leg.activity is None for leg in visible):
-            return
-        if any(leg.activity is not None and leg.activity > self._parameters.pause_rate for leg in visible):
-            self._still_since_ns = None
-        elif self._still_since_ns is None:
-            self._still_since_ns = captured_ns
-        elif captured_ns - self._still_since_ns > self._parameters.pause_s * 1e9:
-            self._strides.end_bout()
+        return [output for segmenter in self._segmenters.values() for output in segmenter.take(batch)]
 
     def rejections(self) -> list[Rejection]:
         """Samples that were not used."""
@@ -134,25 +89,16 @@ class SegmentationNode:
         """Everything that changes."""
         return {
             "pairing": self._pairing.snapshot(),
-            "history": self._history.snapshot(),
-            "strides": self._strides.snapshot(),
-            "legs": self._legs.snapshot(),
-            "seen": self._seen,
-            "last_ns": self._last_ns,
-            "still_since_ns": self._still_since_ns,
             "intake": self._intake.snapshot(),
+            "segmenters": {name: segmenter.snapshot() for name, segmenter in self._segmenters.items()},
         }
 
     def restore(self, state: State) -> None:
         """Go on from a snapshot."""
         self._pairing.restore(state["pairing"])
-        self._history.restore(state["history"])
-        self._strides.restore(state["strides"])
-        self._legs.restore(state["legs"])
-        self._seen = list(state["seen"])
-        self._last_ns = state["last_ns"]
-        self._still_since_ns = state["still_since_ns"]
         self._intake.restore(state["intake"])
+        for name, segmenter in self._segmenters.items():
+            segmenter.restore(state["segmenters"][name])
 
 
 def build(description: SessionDescription) -> Node:

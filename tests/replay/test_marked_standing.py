@@ -6,7 +6,7 @@ import pytest
 from schemas.imu import ImuBatch, StandingMark
 from schemas.kinematics import Calibration, JointState, LivePose
 from schemas.vocabulary import LOWER_BODY
-from services.estimation.node import EstimationNode
+from services.estimation.lower_body.node import LowerBodyNode
 from services.flow.message import Message, Output
 from services.ingest.errors import MissingFile
 from services.ingest.source import iter_messages, open_source
@@ -21,7 +21,7 @@ def replay(spec: str, marks: list[tuple[float, float]], *, described: bool = Tru
     except MissingFile as missing:
         pytest.skip(str(missing))
     description = source.describe()
-    node = EstimationNode(description if described else description.model_copy(update={"standing": []}))
+    node = LowerBodyNode(description if described else description.model_copy(update={"standing": []}))
     due = [StandingMark(from_ns=round(a * 1e9), to_ns=round(b * 1e9), given_ns=round(b * 1e9)) for a, b in marks]
     outputs: list[Output] = []
     for message in iter_messages(source):

@@ -11,7 +11,7 @@ from schemas.health import Reason
 from schemas.imu import ImuBatch, SensorSamples
 from schemas.kinematics import JointState, LivePose
 from schemas.vocabulary import LOWER_BODY, SensorState
-from services.estimation.node import EstimationNode
+from services.estimation.lower_body.node import LowerBodyNode
 from services.faults.faults import ClockStep, HubGap, SensorOff, SensorStuck, Spike
 from services.faults.inject import inject
 from services.flow.message import Message, Output
@@ -39,12 +39,12 @@ def sensors() -> list[str]:
     return [sensor.name for sensor in recorded()[0].hubs[0].sensors]
 
 
-def run(messages) -> tuple[EstimationNode, list[Output]]:
-    node = EstimationNode(recorded()[0])
+def run(messages) -> tuple[LowerBodyNode, list[Output]]:
+    node = LowerBodyNode(recorded()[0])
     return node, [output for message in messages for output in node.step(message)]
 
 
-def damaged(*faults) -> tuple[EstimationNode, list[Output]]:
+def damaged(*faults) -> tuple[LowerBodyNode, list[Output]]:
     return run(inject(recorded()[1], sensors(), faults))
 
 

@@ -10,7 +10,7 @@ from schemas.imu import ImuBatch
 from schemas.kinematics import JointState
 from services.bench.performance.disturbed import FLEXIONS, Estimated, Walk, estimate, synthetic_walk
 from services.bench.performance.loss_scores import Errors, errors_of, recovery_s
-from services.estimation.node import EstimationNode
+from services.estimation.lower_body.node import LowerBodyNode
 from services.faults.faults import HubGap, SensorOff, radio_loss
 from services.faults.inject import Injection
 
@@ -105,7 +105,7 @@ def test_calibration_under_loss():
 def test_received_and_lost_are_what_was_sent():
     """Every instant at which any sensor was heard is estimated once, and no delivered sample is refused."""
     injection = Injection(walk().sensors, radio_loss(walk().sensors, 0.2, 7))
-    node = EstimationNode(walk().description)
+    node = LowerBodyNode(walk().description)
     received = dict.fromkeys(walk().sensors, 0)
     delivered, estimated = set(), []
     for message in injection.apply(walk().messages):
@@ -121,7 +121,7 @@ def test_received_and_lost_are_what_was_sent():
     assert node.rejections() == []
 
 
-def states(node: EstimationNode, messages) -> list[JointState]:
+def states(node: LowerBodyNode, messages) -> list[JointState]:
     produced = [output.payload for message in messages if message.payload for output in node.step(message)]
     return [payload for payload in produced if isinstance(payload, JointState)]
 
@@ -132,7 +132,7 @@ def test_it_resumes_in_an_outage_as_if_it_had_not_stopped(resume_s):
     faults = [*bursts, SensorOff("thigh_left", OFF_S, BACK_S), HubGap(BACK_S + 0.5, BACK_S + 1.0)]
     messages = list(Injection(walk().sensors, faults).apply(walk().messages))
     before = [m for m in messages if m.envelope.captured_ns < resume_s * 1e9]
-    whole, first, second = (EstimationNode(walk().description) for _ in range(3))
+    whole, first, second = (LowerBodyNode(walk().description) for _ in range(3))
     expected = states(whole, messages)
     begun = states(first, before)
     second.restore(json.loads(json.dumps(first.snapshot())))

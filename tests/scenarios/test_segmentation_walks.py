@@ -12,8 +12,8 @@ from schemas.vocabulary import LOWER_BODY, GaitEventKind, Side
 from services.bench.gait.joint_walks import JOINTS, RHYTHMS, JointTrack, joint_walk
 from services.flow.message import Envelope, Message, Stream
 from services.metrics.node import build as build_metrics
+from services.segmentation.gait.strides import GAP, PHASE_LONG, PHASE_SHORT, SENSOR_MISSING
 from services.segmentation.node import build as build_segmentation
-from services.segmentation.strides import GAP, PHASE_LONG, PHASE_SHORT, SENSOR_MISSING
 
 WALK = "speed=1.1&seed=3&duration=30&turn_every=0"
 DOFS = [dof.name for dof in LOWER_BODY]

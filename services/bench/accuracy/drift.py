@@ -14,7 +14,7 @@ from schemas.signals import JOINT_STATE, REFERENCE
 from schemas.vocabulary import LOWER_BODY
 from services.bench.accuracy.joint_scores import column_of
 from services.bench.scoreboard import Row, Scoreboard, at_most, informative
-from services.estimation.node import EstimationNode
+from services.estimation.lower_body.node import LowerBodyNode
 from services.estimation.parameters import EstimationParameters
 from services.flow.chain import Chain
 from services.flow.host import HostedNode
@@ -52,7 +52,7 @@ def errors(seed: int, drift: float, duration_s: float = DURATION_S) -> dict[bool
     description = source.describe()
     chains = {
         follow: Chain(
-            [HostedNode("estimation", "drift", EstimationNode(description, EstimationParameters(follow_bias=follow)))]
+            [HostedNode("estimation", "drift", LowerBodyNode(description, EstimationParameters(follow_bias=follow)))]
         )
         for follow in (False, True)
     }

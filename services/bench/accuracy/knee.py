@@ -6,7 +6,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from schemas.vocabulary import ESTIMATORS, Side
+from schemas.vocabulary import LOWER_BODY_ESTIMATORS, Side
 from services.bench.accuracy.joint_scores import Score, best_score, column_of, estimate_angles, score
 from services.bench.accuracy.neura_truth import reference_channels
 from services.bench.accuracy.vqf_hinge import is_installed, vqf_hinge_angles
@@ -85,7 +85,7 @@ def run(subject: str, json_path: Path | None = None) -> Scoreboard:
     truth = knee_truth(recording.spec)
     baseline = _baseline(recording, truth) if is_installed() else None
     rows: list[Row] = []
-    for estimator in ESTIMATORS:
+    for estimator in LOWER_BODY_ESTIMATORS:
         reached = knee_scores(estimate_angles(recording.spec, estimator), truth, recording.windows)
         for window, (best, fixed) in reached.items():
             title = f"{estimator}, knee {SIDE}, {window}"

@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 
 from schemas.session import SensorDescription, SessionDescription
 from services.biomech.lower_body_ekf import NoiseModel
-from services.estimation.lower_body_filter import Calibrated, LowerBodyFilter
+from services.estimation.lower_body.lower_body_filter import Calibrated, LowerBodyFilter
 from services.estimation.parameters import FilterParameters
 from services.estimation.samples import Tick
 

@@ -7,14 +7,15 @@ import numpy as np
 from numpy.typing import NDArray
 
 from schemas.session import Anthropometry, HubDescription, Placement, SensorDescription, SessionDescription
+from schemas.vocabulary import Task
 from services.bench.accuracy.joint_scores import Score, best_score, column_of, score
 from services.bench.accuracy.kam_steps import NAMES, RATE_HZ, Step, read_steps
 from services.bench.accuracy.offline_steps import NOISE, both_ways, quietest
 from services.bench.scoreboard import Row, Scoreboard, at_most, informative
 from services.biomech.lower_body_ekf import NoiseModel
 from services.biomech.rotations import frame_from_up_and_right
-from services.estimation.alignment import Alignment
-from services.estimation.lower_body_filter import Calibrated
+from services.estimation.lower_body.alignment import Alignment
+from services.estimation.lower_body.lower_body_filter import Calibrated
 
 Array = NDArray[np.float64]
 
@@ -43,7 +44,7 @@ def describe() -> SessionDescription:
     """Pelvis, right thigh and right shank, worn in front."""
     sensors = [
         SensorDescription(
-            name=segment.value, segment=segment, rate_hz=RATE_HZ, outward_axis=[0.0, 0.0, 1.0],
+            name=segment.value, segment=segment, rate_hz=RATE_HZ, outward_axis=[0.0, 0.0, 1.0], upward_axis=None,
             placement=Placement.ANTERIOR, position_in_segment=None,
         )
         for segment in NAMES
@@ -53,8 +54,8 @@ def describe() -> SessionDescription:
     )
     return SessionDescription(
         session="kam", title="Single treadmill steps", started_unix_ns=0, origin="recording", protocol="walking",
-        estimator="ekf", walk_path="turning", hubs=[HubDescription(name="imu", sensors=sensors)], anthropometry=body,
-        standing=[], reference=[], duration_s=None, known_rhythms=[],
+        task=Task.WALK, estimator="ekf", walk_path="turning", hubs=[HubDescription(name="imu", sensors=sensors)],
+        anthropometry=body, standing=[], reference=[], duration_s=None, known_rhythms=[],
     )  # fmt: skip
 
 

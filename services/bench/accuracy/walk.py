@@ -7,12 +7,12 @@ import numpy as np
 from numpy.typing import NDArray
 
 from schemas.session import SessionDescription
-from schemas.vocabulary import ESTIMATORS, Side
+from schemas.vocabulary import LOWER_BODY_ESTIMATORS, Side
 from services.bench.accuracy.joint_scores import SHIFTS, Score, best_score, column_of, estimate_angles, score
 from services.bench.accuracy.neura_truth import NeuraTruth, collect_truth
 from services.bench.accuracy.vqf_hinge import is_installed, vqf_hinge_angles
 from services.bench.scoreboard import Row, Scoreboard, at_most, informative
-from services.estimation.node import EstimationNode
+from services.estimation.lower_body.node import LowerBodyNode
 from services.estimation.parameters import PUBLISHED as PUBLISHED_PARAMETERS
 from services.estimation.parameters import EstimationParameters
 from services.flow.node import Node
@@ -109,7 +109,7 @@ def run(subject: str, json_path: Path | None = None) -> Scoreboard:
     truth = collect_truth(spec)
     baseline = figures(vqf_hinge_angles(spec), truth) if is_installed() else {}
     rows: list[Row] = []
-    for estimator in ESTIMATORS:
+    for estimator in LOWER_BODY_ESTIMATORS:
         rows += estimator_rows(estimator, estimate_angles(spec, estimator), truth, baseline)
     rows += without_standing_rows(without_standing(spec, truth))
     rows += walk_path_rows(spec, truth)
@@ -161,7 +161,7 @@ def path_rows(title: str, scores: Figures) -> list[Row]:
 def _sure_of_yaw(description: SessionDescription) -> Node:
     ours = EstimationParameters()
     noise = replace(ours.filter.noise, yaw_std=PUBLISHED_PARAMETERS.noise.yaw_std)
-    return EstimationNode(description, replace(ours, filter=replace(ours.filter, noise=noise)))
+    return LowerBodyNode(description, replace(ours, filter=replace(ours.filter, noise=noise)))
 
 
 def without_standing(spec: str, truth: NeuraTruth) -> Figures:

@@ -10,9 +10,9 @@ from schemas.signals import IMU
 from schemas.vocabulary import LOWER_BODY, Segment
 from services.biomech.lower_body_ekf import LowerBodyEkf, NoiseModel
 from services.biomech.rhythm.joukov import JoukovOscillator
-from services.estimation.calibrator import Calibrator
 from services.estimation.intake import Intake
-from services.estimation.lower_body_filter import Calibrated, LowerBodyFilter
+from services.estimation.lower_body.calibrator import Calibrator
+from services.estimation.lower_body.lower_body_filter import Calibrated, LowerBodyFilter
 from services.estimation.parameters import EstimationParameters, FilterParameters
 from services.estimation.samples import Tick, TickBatch
 from services.ingest.source import iter_messages, open_source

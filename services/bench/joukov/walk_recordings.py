@@ -12,8 +12,8 @@ from numpy.typing import NDArray
 
 from schemas.session import SessionDescription
 from services.bench.joukov.recordings import COLUMNS, JOINTS
-from services.estimation.calibrator import Calibrator
-from services.estimation.lower_body_filter import Calibrated, LowerBodyFilter
+from services.estimation.lower_body.calibrator import Calibrator
+from services.estimation.lower_body.lower_body_filter import Calibrated, LowerBodyFilter
 from services.estimation.parameters import EstimationParameters, FilterParameters
 from services.estimation.samples import Tick, TickBatch
 from services.estimation.sensor_checks import SensorChecks

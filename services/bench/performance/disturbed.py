@@ -14,7 +14,7 @@ from schemas.session import SessionDescription
 from schemas.signals import IMU
 from schemas.vocabulary import LOWER_BODY, Side
 from services.bench.accuracy.neura_truth import collect_truth
-from services.estimation.node import EstimationNode
+from services.estimation.lower_body.node import LowerBodyNode
 from services.faults.faults import SampleFault
 from services.faults.inject import Injection
 from services.flow.message import Message
@@ -98,7 +98,7 @@ def recorded_walk(spec: str, walking_s: tuple[float, float]) -> Walk:
 
 def estimate(walk: Walk, estimator: str, faults: Sequence[SampleFault] = ()) -> Estimated:
     """The walk through estimation, with faults in its samples. Raises ValueError when it does not calibrate."""
-    node = EstimationNode(walk.description.model_copy(update={"estimator": estimator}))
+    node = LowerBodyNode(walk.description.model_copy(update={"estimator": estimator}))
     injection = Injection(walk.sensors, faults)
     calibration: Calibration | None = None
     rows: list[tuple[int, list[float], list[float], list[bool]]] = []

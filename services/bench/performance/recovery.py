@@ -20,6 +20,7 @@ from schemas.health import Progress
 from schemas.imu import ImuBatch, SensorSamples
 from schemas.session import Anthropometry, HubDescription, SessionDescription
 from schemas.signals import IMU, JOINT_STATE, description_key, progress_key, session_token_key
+from schemas.vocabulary import Task
 from services.archive.reader import open_recording
 from services.archive.record import Record
 from services.archive.writer import SessionWriter
@@ -178,6 +179,7 @@ def describe(session: str) -> SessionDescription:
         started_unix_ns=time.time_ns(),
         origin="synthetic",
         protocol="walk",
+        task=Task.WALK,
         estimator="ekf",
         walk_path="turning",
         hubs=[HubDescription(name="hub", sensors=[])],

@@ -23,7 +23,7 @@ from services.biomech.lower_body import SEGMENTS, LowerBodyModel, SensorMount
 from services.biomech.lower_body_ekf import LowerBodyEkf, MeasurementModel, NoiseModel
 from services.biomech.pinocchio_model import PinocchioBody
 from services.biomech.textbook_ekf import TextbookEkf
-from services.estimation.lower_body_filter import RHYTHM_CHANNELS
+from services.estimation.lower_body.lower_body_filter import RHYTHM_CHANNELS
 from services.estimation.parameters import FilterParameters
 
 Array = NDArray[np.float64]

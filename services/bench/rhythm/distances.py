@@ -17,8 +17,8 @@ from services.biomech.rhythm.comparison import Comparison, Leg, compare_legs
 from services.biomech.rhythm.learned import Learned, LearnedStrides
 from services.biomech.rhythm.reading import RhythmReading
 from services.biomech.rhythm.trusted import TrustedRhythm
-from services.estimation.learning import described
-from services.estimation.lower_body_filter import RHYTHM_CHANNELS
+from services.estimation.lower_body.learning import described
+from services.estimation.lower_body.lower_body_filter import RHYTHM_CHANNELS
 from services.estimation.node import build
 from services.flow.chain import Chain
 from services.flow.host import HostedNode

@@ -1,11 +1,9 @@
 """Sensors worn otherwise than declared, told from where the knee lies and where the flexion axis points."""
 
-from enum import StrEnum
-
 import numpy as np
 from numpy.typing import NDArray
 
-from schemas.vocabulary import Side
+from schemas.vocabulary import Misplacement, Side
 from services.biomech.rotations import normalised
 
 Array = NDArray[np.float64]
@@ -14,15 +12,6 @@ CLEAR_M = 0.05
 """m by which the knee must lie on the wrong side of a sensor."""
 CLEAR_SHARE = 0.5
 """Share of a direction (60 degrees) that must point the wrong way."""
-
-
-class Misplacement(StrEnum):
-    """What is worn otherwise than declared."""
-
-    SWAPPED = "swapped"  # the thigh's sensor is on the shank and the other way round
-    THIGH_UPSIDE_DOWN = "thigh_upside_down"
-    SHANK_UPSIDE_DOWN = "shank_upside_down"
-    OTHER_LEG = "other_leg"
 
 
 def are_swapped(arms: Array, up: Array) -> bool:

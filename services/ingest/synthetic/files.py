@@ -56,6 +56,7 @@ def _manifest(description: SessionDescription, options: str) -> str:
         f"# Written by `ambula synth {options}`; the truth beside it is exact.",
         f'title = "{description.title}"',
         f'protocol = "{description.protocol}"',
+        f'task = "{description.task}"',
         f'walk_path = "{description.walk_path}"',
         f"rate_hz = {description.hubs[0].sensors[0].rate_hz}",
         "",
@@ -89,11 +90,13 @@ def _manifest(description: SessionDescription, options: str) -> str:
 
 
 def _sensor_lines(sensor: SensorDescription) -> list[str]:
+    upward = [] if sensor.upward_axis is None else [f"upward_axis = {sensor.upward_axis}"]
     return [
         "[[hub.sensor]]",
         f'name = "{sensor.name}"',
         f'segment = "{sensor.segment}"',
         f"outward_axis = {sensor.outward_axis}",
+        *upward,
         f'placement = "{sensor.placement}"',
         f"position_in_segment = {sensor.position_in_segment}",
     ]

@@ -77,6 +77,7 @@ def _mount(
             segment=segment,
             rate_hz=parameters.rate,
             outward_axis=[0.0, 0.0, 1.0],
+            upward_axis=[1.0, 0.0, 0.0] if _is_upright(np.array(outward)) else None,
             placement=placement,
             position_in_segment=list(position),
         ),
@@ -95,9 +96,14 @@ def _direction(rng: np.random.Generator) -> NDArray[np.float64]:
     return np.asarray(vector / np.linalg.norm(vector))
 
 
+def _is_upright(outward: NDArray[np.float64]) -> bool:
+    """Whether a sensor on this side of a standing segment has an axis along it."""
+    return bool(abs(outward @ UP) < 0.5)
+
+
 def _nominal(outward: NDArray[np.float64]) -> NDArray[np.float64]:
     """R_segment_from_sensor with z out of the skin and x up the segment, or backward where the skin faces up."""
-    along = UP if abs(outward @ UP) < 0.5 else np.array([-1.0, 0.0, 0.0])
+    along = UP if _is_upright(outward) else np.array([-1.0, 0.0, 0.0])
     return np.column_stack([along, np.cross(outward, along), outward])
 
 

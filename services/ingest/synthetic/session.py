@@ -10,7 +10,7 @@ import numpy as np
 from scipy.interpolate import PchipInterpolator
 
 from schemas.session import Anthropometry, HubDescription, ReferenceChannel, SessionDescription
-from schemas.vocabulary import LOWER_BODY, Side
+from schemas.vocabulary import LOWER_BODY, Side, Task
 from services.ingest.synthetic.gait import Gait, Strides, WalkingBody
 from services.ingest.synthetic.jets import Array, Jet
 from services.ingest.synthetic.parameters import SessionParameters
@@ -43,6 +43,7 @@ class SyntheticSession(ABC):
 
     title: str
     protocol: str
+    task = Task.WALK
 
     def __init__(self, parameters: SessionParameters, timeline: Timeline, gait: Gait) -> None:
         self.parameters = parameters
@@ -73,6 +74,7 @@ class SyntheticSession(ABC):
             started_unix_ns=started_unix_ns,
             origin="synthetic",
             protocol=self.protocol,
+            task=self.task,
             estimator="rhythmic_ekf",
             walk_path="turning",
             hubs=[HubDescription(name=HUB, sensors=[mount.description for mount in self.mounts])],

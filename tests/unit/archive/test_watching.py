@@ -73,6 +73,8 @@ def test_every_archived_stream_of_a_session_is_expected(description):
         "segment_motion/estimation",
         "gait_event/segmentation",
         "stride/segmentation",
+        "task_phase/segmentation",
+        "repetition/segmentation",
         "metrics/metrics",
     }
     assert {stream.name for stream in expected_streams(description)} == {"imu/hub", *computed}

@@ -23,7 +23,7 @@ from schemas.vocabulary import LOWER_BODY, Segment
 from services.biomech.lower_body import SEGMENTS, LowerBodyModel, SensorMount
 from services.biomech.pinocchio_model import PinocchioBody
 from services.biomech.rotations import rotation_about
-from services.estimation.node import EstimationNode
+from services.estimation.lower_body.node import LowerBodyNode
 from services.flow.message import Envelope, Message, Output, Stream
 
 Array = NDArray[np.float64]
@@ -137,7 +137,7 @@ def sensor_samples(times: Sequence[int], values: Array) -> SensorSamples:
     )
 
 
-def run(node: EstimationNode, stream: Iterable[Message]) -> list[Output]:
+def run(node: LowerBodyNode, stream: Iterable[Message]) -> list[Output]:
     outputs = [output for message in stream for output in node.step(message)]
     return outputs + node.finish()
 

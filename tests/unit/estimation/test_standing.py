@@ -9,7 +9,7 @@ from services.estimation.samples import Tick
 from services.estimation.standing import StandingDetector
 
 sys.path.insert(0, str(Path(__file__).parent))
-import estimation_walks as walks
+from tests.unit.estimation import estimation_walks as walks
 
 SENSORS = walks.describe().hubs[0].sensors
 ALL = np.ones(5, dtype=np.bool_)

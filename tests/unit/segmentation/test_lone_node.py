@@ -15,10 +15,10 @@ from schemas.vocabulary import GaitEventKind, Segment, Side
 from services.bench.gait.joint_walks import joint_walk
 from services.bench.gait.worn import wearing
 from services.flow.message import Message
+from services.segmentation.gait.strides import SENSOR_MISSING
 from services.segmentation.intake import JOINTS_FROM, MOTION_FROM, RHYTHM_FROM
 from services.segmentation.node import build
 from services.segmentation.parameters import SegmentationParameters
-from services.segmentation.strides import SENSOR_MISSING
 
 WALK = "speed=1.1&seed=3&duration=16"
 BACK, FEET = frozenset({Segment.PELVIS}), frozenset({Segment.FOOT_LEFT, Segment.FOOT_RIGHT})

@@ -126,6 +126,7 @@ def message_of(number: int, **changes) -> Message:
         "position_std": rows,
         "velocity_std": rows,
         "valid": [True] * DOFS,
+        "observed": [],
     }
     return Message(JOINTS, Envelope(0, number, number), JointState.model_construct(**(fields | changes)))
 

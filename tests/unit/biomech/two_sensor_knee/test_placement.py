@@ -3,10 +3,10 @@
 import numpy as np
 import pytest
 
-from schemas.vocabulary import Side
+from schemas.vocabulary import Misplacement, Side
 from services.bench.knee.legs import Sensors, record, walking
 from services.biomech.two_sensor_knee.knee_axis import KneeAxis
-from services.biomech.two_sensor_knee.placement import Misplacement, is_upside_down, leg_worn_on, misplacements
+from services.biomech.two_sensor_knee.placement import is_upside_down, leg_worn_on, misplacements
 
 UP = np.tile([0.0, 1.0, 0.0], (2, 1))
 OUTWARD_RIGHT = np.tile([0.0, 0.0, 1.0], (2, 1))
