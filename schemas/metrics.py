@@ -1,9 +1,12 @@
 """What a session amounts to so far: numbers with their spread, and mean curves."""
 
-from pydantic import Field
+from typing import Any
+
+from pydantic import Field, model_validator
 
 from schemas.gait import CURVE_POINTS
 from schemas.payload import Payload, SessionTime
+from schemas.tasks import Repetition, TaskPhase
 
 
 class Metric(Payload):
@@ -35,3 +38,11 @@ class SessionMetrics(Payload):
     final: bool
     metrics: list[Metric]
     curves: list[MeanCurve]
+    phases: list[TaskPhase] = Field(max_length=500, description="of timed tests so far, in order; the first 500")
+    repetitions: list[Repetition] = Field(max_length=1000, description="in order, when final; the first 1000")
+
+    @model_validator(mode="before")
+    @classmethod
+    def _of_an_older_writer(cls, fields: Any) -> Any:
+        """Earlier ones knew of walking only."""
+        return {"phases": [], "repetitions": [], **fields} if isinstance(fields, dict) else fields

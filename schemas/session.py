@@ -88,6 +88,7 @@ class SessionDescription(Payload):
     origin: Literal["recording", "archive", "synthetic", "device"]
     protocol: str
     task: Task = Field(description="what the person is asked to do")
+    walkway_m: float | None = Field(gt=0, le=100, description="m from start to turning point of a timed test")
     estimator: str = Field(description="a name of vocabulary.ESTIMATORS")
     walk_path: WalkPath = Field(description="turning: anywhere; straight: treadmill, in place, corridor without a turn")
     hubs: list[HubDescription]
@@ -104,7 +105,7 @@ class SessionDescription(Payload):
     @classmethod
     def _of_an_older_writer(cls, fields: Any) -> Any:
         """A session from before these fields existed knew no rhythm, was a walk, and anybody might turn."""
-        before = {"known_rhythms": [], "walk_path": "turning", "task": Task.WALK}
+        before: dict[str, Any] = {"known_rhythms": [], "walk_path": "turning", "task": Task.WALK, "walkway_m": None}
         return {**before, **fields} if isinstance(fields, dict) else fields
 
     @model_validator(mode="after")

@@ -147,6 +147,7 @@ class Manifest(Entry):
     title: str
     protocol: str = ""
     task: Task = Task.WALK
+    walkway_m: Annotated[float, Field(gt=0, le=100)] | None = None
     estimator: str = "rhythmic_ekf"
     walk_path: WalkPath = "turning"
     data: str = "."

@@ -62,6 +62,7 @@ class Recording:
             origin="recording",
             protocol=manifest.protocol,
             task=manifest.task,
+            walkway_m=manifest.walkway_m,
             estimator=identity.estimator or manifest.estimator,
             walk_path=identity.walk_path or manifest.walk_path,
             hubs=[

@@ -71,6 +71,8 @@ class MetricsNode:
                 *rhythm_metrics(self._learned if final else None, self._known, final=final),
             ],
             curves=self._totals.curves(self._parameters),
+            phases=[],
+            repetitions=[],
         )
         return Output(METRICS, self._captured_ns, payload)
 

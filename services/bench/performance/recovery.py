@@ -180,6 +180,7 @@ def describe(session: str) -> SessionDescription:
         origin="synthetic",
         protocol="walk",
         task=Task.WALK,
+        walkway_m=None,
         estimator="ekf",
         walk_path="turning",
         hubs=[HubDescription(name="hub", sensors=[])],

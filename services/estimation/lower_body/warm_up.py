@@ -39,6 +39,6 @@ def _session(estimator: str, sensors: list[SensorDescription]) -> SessionDescrip
     )
     return SessionDescription(
         session="warm-up", title="", started_unix_ns=0, origin="synthetic", protocol="", task=Task.WALK,
-        estimator=estimator, walk_path="turning", hubs=[HubDescription(name="none", sensors=sensors)],
+        walkway_m=None, estimator=estimator, walk_path="turning", hubs=[HubDescription(name="none", sensors=sensors)],
         anthropometry=body, standing=[], reference=[], duration_s=None, known_rhythms=[],
     )  # fmt: skip

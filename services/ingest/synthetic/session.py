@@ -75,6 +75,7 @@ class SyntheticSession(ABC):
             origin="synthetic",
             protocol=self.protocol,
             task=self.task,
+            walkway_m=None,
             estimator="rhythmic_ekf",
             walk_path="turning",
             hubs=[HubDescription(name=HUB, sensors=[mount.description for mount in self.mounts])],
