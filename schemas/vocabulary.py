@@ -143,5 +143,13 @@ LOWER_BODY_ESTIMATORS: dict[str, str] = {
 """Estimators of the lower body, by name: from the plain filter up to ours, then back to the published one part by
 part."""
 
-ESTIMATORS: dict[str, str] = LOWER_BODY_ESTIMATORS
+KNEE_ESTIMATORS: dict[str, str] = {
+    "knee_axis": "one knee whose axis is found and followed while it moves",
+    "knee_axis_mcgrath": "as published: the axis by principal components of the first motion (McGrath 2018)",
+    "knee_band": "one knee of a band worn in one plane, its bias followed while it moves",
+    "knee_band_grover": "as published: bias from the first 1000 samples, then a one-state filter at 20 Hz (Grover)",
+}
+"""Estimators of single knees, each from a thigh and a shank sensor, by name: ours before the published one."""
+
+ESTIMATORS: dict[str, str] = LOWER_BODY_ESTIMATORS | KNEE_ESTIMATORS
 """All selectable estimators, by name."""

@@ -23,12 +23,21 @@ SHANK_WOBBLE_SHARE = 0.4
 DRIFT_TIME_S = 600.0
 """Over which the drift of a bias is stated."""
 
+LEFT_LEG, RIGHT_LEG, PELVIS = 1, 2, 3
+_WORN: dict[int, tuple[Segment, ...]] = {
+    LEFT_LEG: (Segment.THIGH_LEFT, Segment.SHANK_LEFT),
+    RIGHT_LEG: (Segment.THIGH_RIGHT, Segment.SHANK_RIGHT),
+    PELVIS: (Segment.PELVIS,),
+}
+"""Segments that wear a sensor, by the dial `worn`; all do where it is not listed. Shoes have a dial of their own."""
+
 
 @dataclass(frozen=True)
 class Mount:
     """One sensor: where it sits and how it is turned. Axes of the case: x up the limb, z out of the skin."""
 
     description: SensorDescription
+    number: int  # of the place, whatever else is worn: a person's noise is drawn by it
     R_segment_from_sensor: NDArray[np.float64]
     gyro_bias: NDArray[np.float64]  # rad/s at time 0
     gyro_drift: NDArray[np.float64]  # rad/s^2
@@ -54,22 +63,28 @@ _PLACES: tuple[tuple[str, Segment, Placement, tuple[float, float, float], tuple[
 
 def mounts(parameters: SessionParameters) -> list[Mount]:
     """The sensors of a session, turned and biased at random by its seed."""
-    places = [place for place in _PLACES if parameters.feet or not place[0].startswith("foot")]
-    return [_mount(parameters, index, *place) for index, place in enumerate(places)]
+    places = [(number, place) for number, place in enumerate(_PLACES) if _is_worn(place[1], parameters)]
+    return [_mount(parameters, number, *place) for number, place in places]
+
+
+def _is_worn(segment: Segment, parameters: SessionParameters) -> bool:
+    if segment in (Segment.FOOT_LEFT, Segment.FOOT_RIGHT):
+        return bool(parameters.feet)
+    return parameters.worn not in _WORN or segment in _WORN[parameters.worn]
 
 
 def _mount(
     parameters: SessionParameters,
-    index: int,
+    number: int,
     name: str,
     segment: Segment,
     placement: Placement,
     position: tuple[float, float, float],
     outward: tuple[float, float, float],
 ) -> Mount:
-    rng = np.random.default_rng([parameters.seed, 2, index])
+    rng = np.random.default_rng([parameters.seed, 2, number])
     twist = Rotation.from_rotvec(_direction(rng) * rng.uniform(0.0, parameters.mounting)).as_matrix()
-    warming = np.random.default_rng([parameters.seed, 4, index])
+    warming = np.random.default_rng([parameters.seed, 4, number])
     share = {"thigh": 1.0, "shank": SHANK_WOBBLE_SHARE}.get(name.partition("_")[0], 0.0)
     return Mount(
         SensorDescription(
@@ -81,6 +96,7 @@ def _mount(
             placement=placement,
             position_in_segment=list(position),
         ),
+        number,
         twist @ _nominal(np.array(outward)),
         rng.normal(0.0, parameters.gyro_bias, 3),
         warming.normal(0.0, parameters.gyro_drift / DRIFT_TIME_S, 3),

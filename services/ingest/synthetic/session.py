@@ -15,7 +15,7 @@ from services.ingest.synthetic.gait import Gait, Strides, WalkingBody
 from services.ingest.synthetic.jets import Array, Jet
 from services.ingest.synthetic.parameters import SessionParameters
 from services.ingest.synthetic.rigid import PointMotion
-from services.ingest.synthetic.sensors import Mount, measure, mounts, spoiled
+from services.ingest.synthetic.sensors import LEFT_LEG, PELVIS, RIGHT_LEG, Mount, measure, mounts, spoiled
 from services.ingest.synthetic.timeline import Timeline
 from services.ingest.tracks import ImuTrack, ReferenceTrack
 
@@ -25,6 +25,12 @@ BLOCK_SAMPLES = 1000
 
 AMPLITUDES = np.linspace(0.0, 1.6, 33)
 """At which the length of a stride is known."""
+
+_WORN_IN_WORDS = {
+    LEFT_LEG: ", sensors on the left leg alone",
+    RIGHT_LEG: ", sensors on the right leg alone",
+    PELVIS: ", a sensor on the pelvis alone",
+}
 
 
 @dataclass(frozen=True)
@@ -70,13 +76,13 @@ class SyntheticSession(ABC):
         parameters = self.parameters
         return SessionDescription(
             session=session,
-            title=self.title,
+            title=self.title + _WORN_IN_WORDS.get(parameters.worn, ""),
             started_unix_ns=started_unix_ns,
             origin="synthetic",
             protocol=self.protocol,
             task=self.task,
             walkway_m=None,
-            estimator="rhythmic_ekf",
+            estimator="knee_axis" if parameters.worn in (LEFT_LEG, RIGHT_LEG) else "rhythmic_ekf",
             walk_path="turning",
             hubs=[HubDescription(name=HUB, sensors=[mount.description for mount in self.mounts])],
             anthropometry=Anthropometry(
@@ -120,7 +126,7 @@ class SyntheticSession(ABC):
         self, mount: Mount, block: int, body: WalkingBody, strides: Strides, captured_ns: "np.typing.NDArray[np.int64]"
     ) -> ImuTrack:
         truth = measure(mount, body.segments[mount.description.segment], strides.phase, strides.amplitude)
-        rng = np.random.default_rng([self.parameters.seed, 3, self.mounts.index(mount), block])
+        rng = np.random.default_rng([self.parameters.seed, 3, mount.number, block])
         rate, force = spoiled(mount, truth, self.parameters, rng)
         drifted = (captured_ns / 1e9)[:, None] * mount.gyro_drift
         return ImuTrack(captured_ns, rate[:-1] + drifted, force[:-1])

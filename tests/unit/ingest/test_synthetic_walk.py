@@ -257,6 +257,37 @@ def test_a_bias_drifts_as_fast_as_was_asked_for():
     assert np.std(drawn) == pytest.approx(0.06, rel=0.4)
 
 
+@pytest.mark.parametrize(
+    ("worn", "names", "estimator", "words"),
+    [
+        (1, ["thigh_left", "shank_left"], "knee_axis", "left leg alone"),
+        (2, ["thigh_right", "shank_right"], "knee_axis", "right leg alone"),
+        (3, ["pelvis"], "rhythmic_ekf", "pelvis alone"),
+    ],
+)
+@pytest.mark.parametrize("motion", ["walk", "march"])
+def test_sensors_left_off_change_nothing_for_the_others(motion, worn, names, estimator, words):
+    options = f"synthetic:{motion}?duration=6&seed=3&soft_tissue=0.02"
+    every, some = (open_source(spec, session="s") for spec in (options, f"{options}&worn={worn}"))
+    description = some.describe()
+    assert ([sensor.name for sensor in description.hubs[0].sensors], description.estimator) == (names, estimator)
+    assert description.title == f"{every.describe().title}, {description.title.rpartition(', ')[2]}"
+    assert words in description.title
+    places = [[sensor.name for sensor in every.describe().hubs[0].sensors].index(name) for name in names]
+    for whole, part in zip(iter_messages(every), iter_messages(some), strict=True):
+        if isinstance(whole.payload, ImuBatch):
+            assert [whole.payload.sensors[place] for place in places] == part.payload.sensors
+        else:
+            assert whole.payload == part.payload
+
+
+def test_shoes_are_worn_beside_any_sensors():
+    hubs = open_source("synthetic:walk?duration=6&worn=2&feet=1").describe().hubs
+    assert [sensor.name for sensor in hubs[0].sensors] == ["thigh_right", "shank_right", "foot_right", "foot_left"]
+    chosen = open_source("synthetic:walk?duration=6&worn=2", estimator="ekf").describe()
+    assert chosen.estimator == "ekf"
+
+
 def test_jets_follow_the_rules_of_calculus():
     t = np.linspace(0.1, 1.0, 7)
     clock = Jet(t, np.ones_like(t), np.zeros_like(t))

@@ -9,7 +9,7 @@ import pytest
 from schemas.health import Reason
 from schemas.imu import ImuBatch
 from schemas.session import StandingInterval
-from schemas.vocabulary import ESTIMATORS, Segment, SensorState
+from schemas.vocabulary import LOWER_BODY_ESTIMATORS, Segment, SensorState
 from services.biomech.rotations import angle_between, matrix_from_quaternion
 from services.estimation.lower_body.node import LowerBodyNode
 from services.flow.message import Message
@@ -75,7 +75,7 @@ def test_live_view_tells_what_to_do_and_shows_the_bones(undisturbed) -> None:
     assert np.median(np.diff(times)) == 40_000_000
 
 
-@pytest.mark.parametrize("estimator", list(ESTIMATORS))
+@pytest.mark.parametrize("estimator", list(LOWER_BODY_ESTIMATORS))
 @pytest.mark.parametrize("split", [60, 200, 320, 700])
 def test_split_and_resume_is_identical(estimator: str, split: int) -> None:
     description = walks.describe(estimator=estimator)
