@@ -10,8 +10,11 @@ from rich.progress import BarColumn, Progress, TextColumn
 from rich.table import Table
 
 from schemas.metrics import SessionMetrics
+from schemas.rhythm import KnownRhythm
 from schemas.session import WalkPath
+from schemas.vocabulary import Task
 from services.cli.console import err, out, told
+from services.ingest.choices import Choices
 
 app = typer.Typer(
     no_args_is_help=True,
@@ -38,6 +41,14 @@ Straight = Annotated[
         help="straight: treadmill, in place, corridor without a turn; default: as the recording says, else turning",
         show_default=False,
     ),
+]
+Asked = Annotated[
+    Task | None,
+    typer.Option(help="what the person does; default: as the recording says, else walk", show_default=False),
+]
+Walkway = Annotated[
+    float | None,
+    typer.Option(metavar="METRES", help="from the chair to the turning point of a timed up and go", show_default=False),
 ]
 Rhythm = Annotated[
     Path | None,
@@ -81,6 +92,8 @@ def replay(
     speed: Annotated[str, typer.Option(help="1 = as recorded, 10 = ten times as fast, max = as fast as it goes")] = "1",
     estimator: Estimator = None,
     straight: Straight = None,
+    task: Asked = None,
+    walkway: Walkway = None,
     previous_trial: Rhythm = None,
     previous_visit: Rhythm = None,
     exemplar: Rhythm = None,
@@ -89,7 +102,6 @@ def replay(
     from services.bus.connection import Bus, BusUnavailable
     from services.bus.settings import BusSettings
     from services.cli import live, show
-    from services.cli.rhythms import read_known
 
     with (
         told(BusUnavailable, live.NotStarted, live.WentSilent, ValueError),
@@ -97,18 +109,19 @@ def replay(
         live.Watch(bus) as watch,
     ):
         pace = None if speed == "max" else _positive(speed)
-        known = read_known({"previous trial": previous_trial, "previous visit": previous_visit, "exemplar": exemplar})
-        description = live.start_session(bus, _absolute(path), pace, estimator, _walk_path(straight), known)
+        known = _known(previous_trial, previous_visit, exemplar)
+        choices = Choices(estimator, _walk_path(straight), known, task, walkway)
+        description = live.start_session(bus, _absolute(path), pace, choices)
         err.print(f"session {description.session}: {description.title}")
         with Progress(
             TextColumn("{task.description}"), BarColumn(), TextColumn("{task.fields[at]}"), console=err
         ) as bar:
-            task = bar.add_task("replaying", total=description.duration_s, at="")
+            replaying = bar.add_task("replaying", total=description.duration_s, at="")
             for news in watch.follow(description):
                 if isinstance(news, SessionMetrics):
                     out.print(show.metrics_table(news, description.title))
                 else:
-                    bar.update(task, completed=news, at=f"{news:.1f} s")
+                    bar.update(replaying, completed=news, at=f"{news:.1f} s")
 
 
 @app.command()
@@ -132,18 +145,20 @@ def run(
     folder: Annotated[Path, typer.Option("--out", help="folder for the results; made when it is missing")],
     estimator: Estimator = None,
     straight: Straight = None,
+    task: Asked = None,
+    walkway: Walkway = None,
     previous_trial: Rhythm = None,
     previous_visit: Rhythm = None,
     exemplar: Rhythm = None,
 ) -> None:
     """Run a recording through the same nodes in a plain loop and write CSV and JSON files."""
-    from services.cli.rhythms import NoRhythm, read_known
+    from services.cli.rhythms import NoRhythm
     from services.cli.run import run as run_source
     from services.ingest.errors import SourceError
 
     with told(SourceError, NoRhythm, OSError):
-        known = read_known({"previous trial": previous_trial, "previous visit": previous_visit, "exemplar": exemplar})
-        run_source(path, estimator, folder, err, _walk_path(straight), known)
+        known = _known(previous_trial, previous_visit, exemplar)
+        run_source(path, folder, err, Choices(estimator, _walk_path(straight), known, task, walkway))
     out.print(f"written: {folder}/joint_angles.csv, events.csv, strides.csv, metrics.json")
 
 
@@ -236,6 +251,15 @@ def _positive(text: str) -> float:
     if speed <= 0:
         raise ValueError(f"--speed must be more than 0, not {text}")
     return speed
+
+
+def _known(
+    previous_trial: Path | None, previous_visit: Path | None, exemplar: Path | None
+) -> tuple[KnownRhythm, ...] | None:
+    from services.cli.rhythms import read_known
+
+    known = read_known({"previous trial": previous_trial, "previous visit": previous_visit, "exemplar": exemplar})
+    return None if known is None else tuple(known)
 
 
 def _walk_path(straight: bool | None) -> WalkPath | None:

@@ -9,11 +9,11 @@ from typing import Any, Self
 
 from schemas.health import Progress
 from schemas.metrics import SessionMetrics
-from schemas.rhythm import KnownRhythm
-from schemas.session import SessionDescription, WalkPath
+from schemas.session import SessionDescription
 from schemas.signals import METRICS, command_key, progress_key, replay_key, stream_key
 from services.bus.connection import Bus
 from services.bus.received import Received
+from services.ingest.choices import AS_THE_SOURCE_SAYS, Choices
 
 SILENCE_S = 60.0
 """s. A service that crashed is back well before; a session without any news for so long is not coming to its end."""
@@ -28,24 +28,21 @@ class WentSilent(RuntimeError):
 
 
 def start_session(
-    bus: Bus,
-    spec: str,
-    speed: float | None,
-    estimator: str | None,
-    walk_path: WalkPath | None = None,
-    known_rhythms: list[KnownRhythm] | None = None,
+    bus: Bus, spec: str, speed: float | None, choices: Choices = AS_THE_SOURCE_SAYS
 ) -> SessionDescription:
     """Ask an ingest to play a source as a live session. `speed` None: as fast as the services follow.
 
     Raises NotStarted with the reason that ingest gave, or with what to do when no ingest answers.
     """
-    known = None if known_rhythms is None else [each.model_dump(mode="json") for each in known_rhythms]
+    known = choices.known_rhythms
     order = {
         "source": spec,
         "speed": speed,
-        "estimator": estimator,
-        "walk_path": walk_path,
-        "known_rhythms": known,
+        "estimator": choices.estimator,
+        "walk_path": choices.walk_path,
+        "known_rhythms": None if known is None else [each.model_dump(mode="json") for each in known],
+        "task": choices.task,
+        "walkway_m": choices.walkway_m,
         "session": None,
     }
     replies = bus.ask(command_key(bus.settings.site, "ingest", "start"), body=json.dumps(order).encode(), timeout_s=30)

@@ -11,15 +11,15 @@ from rich.progress import BarColumn, Progress, TextColumn, TimeRemainingColumn
 from schemas.gait import GaitEvent, Stride
 from schemas.kinematics import JointState
 from schemas.metrics import SessionMetrics
-from schemas.rhythm import KnownRhythm, LearnedRhythm
-from schemas.session import WalkPath
+from schemas.rhythm import LearnedRhythm
 from schemas.vocabulary import BODY_MODELS
 from services.cli import tables
 from services.cli.assembly import build_chain
 from services.cli.rhythms import FILE_NAME
 from services.flow.chain import Chain
 from services.flow.message import Message
-from services.ingest.source import Source, iter_messages, open_source
+from services.ingest.choices import AS_THE_SOURCE_SAYS, Choices
+from services.ingest.source import Source, iter_messages, open_chosen
 
 
 class RunFiles:
@@ -60,16 +60,9 @@ class RunFiles:
             (self.folder / FILE_NAME).write_text(self.rhythm.model_dump_json(indent=2) + "\n", encoding="utf-8")
 
 
-def run(
-    spec: str,
-    estimator: str | None,
-    folder: Path,
-    console: Console,
-    walk_path: WalkPath | None = None,
-    known_rhythms: list[KnownRhythm] | None = None,
-) -> dict[str, Any]:
+def run(spec: str, folder: Path, console: Console, choices: Choices = AS_THE_SOURCE_SAYS) -> dict[str, Any]:
     """Run a source to its end; the header of metrics.json. Raises SourceError for a source that cannot be read."""
-    source = open_source(spec, estimator=estimator, walk_path=walk_path, known_rhythms=known_rhythms)
+    source = open_chosen(spec, choices)
     description = source.describe()
     chain = build_chain(description)
     files = RunFiles(folder)
@@ -97,6 +90,8 @@ def _header(source: Source, chain: Chain) -> dict[str, Any]:
         "title": description.title,
         "estimator": description.estimator,
         "walk_path": description.walk_path,
+        "task": description.task,
+        "walkway_m": description.walkway_m,
         "known_rhythms": [{"kind": known.kind, "name": known.name} for known in description.known_rhythms],
         "definitions": tables.STRIDE_DEFINITION,
         "rejections": [rejection.model_dump(mode="json") for rejection in rejections],

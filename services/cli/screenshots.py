@@ -59,8 +59,8 @@ def _take_all(page: Chrome, url: str, settings: BusSettings, folder: Path) -> No
         return any(text in each.text for each in page.find_elements(By.CSS_SELECTOR, selector))
 
     with Bus.open(settings, "screenshots") as bus:
-        finished = live.start_session(bus, SHORT, None, None).session
-        walking = [live.start_session(bus, spec, 1.0, None).session for spec in (*LONG, *_recorded())]
+        finished = live.start_session(bus, SHORT, None).session
+        walking = [live.start_session(bus, spec, 1.0).session for spec in (*LONG, *_recorded())]
     live_path, report_path = f"/#/sessions/{walking[0]}", f"/#/sessions/{finished}"
     take("sessions", "/", lambda: shown(".card .chip", "Live"))
     take("live", live_path, lambda: shown(".session-head .chip", "Live") and not shown(".numbers td", "–"))

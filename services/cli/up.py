@@ -36,10 +36,10 @@ def _start_demo(settings: BusSettings) -> None:
     with Bus.open(settings, "demo") as bus:
         for spec in DEMO_SOURCES:
             try:
-                open_source(spec, estimator=None)
+                open_source(spec)
             except SourceError as error:
                 err.print(f"  not shown: {spec} ({error})", highlight=False)
                 continue
-            description = live.start_session(bus, spec, 1.0, None)
+            description = live.start_session(bus, spec, 1.0)
             out.print(f"  live: {description.title}")
             time.sleep(0.1)

@@ -95,17 +95,9 @@ class McapRecording:
             raise EmptyFile(f"{place(paths[0])}: no samples in it; give the raw file of the recording")
 
     def describe(self) -> SessionDescription:
-        """The recorded session under its new id."""
-        changed = {
-            "session": self._identity.session,
-            "origin": "archive",
-            "estimator": self._identity.estimator or self._recorded.estimator,
-            "walk_path": self._identity.walk_path or self._recorded.walk_path,
-            "known_rhythms": self._recorded.known_rhythms
-            if self._identity.known_rhythms is None
-            else list(self._identity.known_rhythms),
-        }
-        return self._recorded.model_copy(update=changed)
+        """The recorded session under its new id, with what the operator chose."""
+        renamed = self._recorded.model_copy(update={"session": self._identity.session, "origin": "archive"})
+        return self._identity.choices.applied(renamed)
 
     def messages(self) -> Iterator[SourceMessage]:
         """As recorded: each stream by sequence number, the streams among each other by time of capture."""

@@ -7,6 +7,8 @@ from pydantic import BaseModel, ConfigDict, Field, ValidationError
 
 from schemas.rhythm import KnownRhythm
 from schemas.session import WalkPath
+from schemas.vocabulary import Task
+from services.ingest.choices import Choices
 from services.ingest.errors import SourceError
 
 
@@ -28,8 +30,16 @@ class StartOrder(Order):
     estimator: str | None = None
     walk_path: WalkPath | None = None
     known_rhythms: list[KnownRhythm] | None = Field(default=None, max_length=3, description="null: as recorded")
+    task: Task | None = None
+    walkway_m: float | None = Field(default=None, description="m from start to turning point of a timed test")
     session: str | None = None
     ticks: Annotated[int, Field(ge=1, le=5)] = 1
+
+    @property
+    def choices(self) -> Choices:
+        """What the operator chose. Raises InvalidOption."""
+        known = None if self.known_rhythms is None else tuple(self.known_rhythms)
+        return Choices(self.estimator, self.walk_path, known, self.task, self.walkway_m)
 
 
 class MarkOrder(Order):

@@ -50,12 +50,12 @@ class Recording:
         self._reference = reference_track(truth, zero_s) if truth else None
 
     def describe(self) -> SessionDescription:
-        """The session as the manifest tells it."""
+        """The session as the manifest tells it, with what the operator chose."""
         manifest, identity = self._manifest, self._identity
         started = manifest.started
         if started is not None and started.tzinfo is None:
             started = started.replace(tzinfo=UTC)
-        return SessionDescription(
+        recorded = SessionDescription(
             session=identity.session,
             title=manifest.title,
             started_unix_ns=identity.started_unix_ns if started is None else round(started.timestamp() * 1e9),
@@ -63,8 +63,8 @@ class Recording:
             protocol=manifest.protocol,
             task=manifest.task,
             walkway_m=manifest.walkway_m,
-            estimator=identity.estimator or manifest.estimator,
-            walk_path=identity.walk_path or manifest.walk_path,
+            estimator=manifest.estimator,
+            walk_path=manifest.walk_path,
             hubs=[
                 HubDescription(name=hub.name, sensors=[_described(manifest, sensor) for sensor in hub.sensor])
                 for hub in manifest.hub
@@ -80,8 +80,9 @@ class Recording:
                 for name, unit in channels_of(entry)
             ],
             duration_s=self._last_ns() * 1e-9,
-            known_rhythms=list(identity.known_rhythms or ()),
+            known_rhythms=[],
         )
+        return identity.choices.applied(recorded)
 
     def messages(self) -> Iterator[SourceMessage]:
         """One message per hub and tick, truth beside it."""

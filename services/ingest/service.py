@@ -25,7 +25,7 @@ from services.ingest.manifest import load_manifest
 from services.ingest.orders import InvalidOrder, MarkOrder, StartOrder, StopOrder, parse_order, refusal
 from services.ingest.parameters import PARAMETERS, IngestParameters
 from services.ingest.playback import Playback
-from services.ingest.source import known_recordings, open_source
+from services.ingest.source import known_recordings, open_chosen
 
 SERVICE = "ingest"
 SAMPLE_READERS = ("estimation", "archive")
@@ -117,13 +117,7 @@ class IngestService:
         order = parse_order(StartOrder, body)
         if order.session in self._descriptions:
             raise InvalidOrder(f"session {order.session} runs already; stop it or choose another id")
-        source = open_source(
-            order.source,
-            session=order.session,
-            estimator=order.estimator,
-            walk_path=order.walk_path,
-            known_rhythms=order.known_rhythms,
-        )
+        source = open_chosen(order.source, order.choices, session=order.session)
         description = source.describe()
         with self._lock:
             if description.session in self._descriptions:

@@ -6,8 +6,10 @@ from pathlib import Path
 from schemas.archive_layout import PART_SUFFIX
 from schemas.rhythm import KnownRhythm
 from schemas.session import WalkPath
+from schemas.vocabulary import Task
 from services.flow.message import Envelope, Message
 from services.ingest.batching import Batcher
+from services.ingest.choices import AS_THE_SOURCE_SAYS, Choices
 from services.ingest.data import MANIFESTS, data_folders
 from services.ingest.driver import Source, SourceMessage, streams_of
 from services.ingest.errors import SourceError, UnknownSource
@@ -17,7 +19,7 @@ from services.ingest.mcap_file import McapRecording, raw_files
 from services.ingest.recording import Recording
 from services.ingest.synthetic.source import open_synthetic
 
-__all__ = ["Source", "SourceError", "SourceMessage", "iter_messages", "known_recordings", "open_source"]
+__all__ = ["Source", "SourceError", "SourceMessage", "iter_messages", "known_recordings", "open_chosen", "open_source"]
 
 
 def known_recordings() -> dict[str, Path]:
@@ -37,14 +39,21 @@ def open_source(
     estimator: str | None = None,
     walk_path: WalkPath | None = None,
     known_rhythms: Sequence[KnownRhythm] | None = None,
+    task: Task | None = None,
+    walkway_m: float | None = None,
 ) -> Source:
-    """Open a recording folder, a manifest, an .mcap file or an archived session's folder, a known recording's name,
-    `synthetic:walk?speed=1.1` or `synthetic:march?metronome=70`.
+    """`open_chosen` with the choices by name."""
+    known = None if known_rhythms is None else tuple(known_rhythms)
+    return open_chosen(spec, Choices(estimator, walk_path, known, task, walkway_m), session=session)
 
-    `session` None takes a random id; `estimator`, `walk_path` and `known_rhythms` None leave the choice to the source.
-    Raises SourceError, saying what is wrong where and what to do.
+
+def open_chosen(spec: str, choices: Choices = AS_THE_SOURCE_SAYS, *, session: str | None = None) -> Source:
+    """Open a recording folder, a manifest, an .mcap file or an archived session's folder, a known recording's name,
+    `synthetic:walk?speed=1.1` or another synthetic motion.
+
+    `session` None takes a random id. Raises SourceError, saying what is wrong where and what to do.
     """
-    identity = Identity.new(session, estimator, walk_path, known_rhythms)
+    identity = Identity.new(session, choices)
     scheme, separator, rest = spec.partition(":")
     if separator and scheme == "synthetic":
         return open_synthetic(rest, identity)

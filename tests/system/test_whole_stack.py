@@ -19,6 +19,7 @@ from services.cli import live
 from services.cli.assembly import build_chain
 from services.cli.supervisor import Supervisor
 from services.flow.message import Message, encode_payload
+from services.ingest.choices import Choices
 from services.ingest.source import iter_messages, open_source
 
 pytestmark = pytest.mark.system
@@ -36,7 +37,7 @@ class Stack:
     def play(self, spec: str, speed: float | None, disturb=None) -> SessionDescription:
         """Play a source to its final metrics; `disturb(supervisor)` runs once a third of it is done."""
         with Bus.open(self.settings, "test") as bus, live.Watch(bus) as watch:
-            description = live.start_session(bus, spec, speed, "rhythmic_ekf")
+            description = live.start_session(bus, spec, speed, Choices("rhythmic_ekf"))
             deadline = time.monotonic() + 90
             for news in watch.follow(description):
                 assert time.monotonic() < deadline
@@ -122,7 +123,7 @@ def test_nothing_is_lost_when_a_service_is_killed(stack, victim):
 def test_two_patients_at_once_equal_each_alone(stack):
     other = "synthetic:walk?speed=0.8&seed=12&duration=24"
     with Bus.open(stack.settings, "test") as bus, live.Watch(bus) as watch:
-        descriptions = [live.start_session(bus, spec, 4.0, "rhythmic_ekf") for spec in (WALK, other)]
+        descriptions = [live.start_session(bus, spec, 4.0, Choices("rhythmic_ekf")) for spec in (WALK, other)]
         for description in descriptions:
             assert any(isinstance(news, SessionMetrics) for news in watch.follow(description))
     same_as_plain_loop(stack, descriptions[0], WALK)

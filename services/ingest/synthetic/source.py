@@ -23,14 +23,8 @@ class SyntheticSource:
 
     def describe(self) -> SessionDescription:
         """The session, with what the operator chose."""
-        description = self._session.description(self._identity.session, self._identity.started_unix_ns)
-        return description.model_copy(
-            update={
-                "estimator": self._identity.estimator or description.estimator,
-                "walk_path": self._identity.walk_path or description.walk_path,
-                "known_rhythms": list(self._identity.known_rhythms or ()),
-            }
-        )
+        identity = self._identity
+        return identity.choices.applied(self._session.description(identity.session, identity.started_unix_ns))
 
     def messages(self) -> Iterator[SourceMessage]:
         """One message per tick, truth beside it."""

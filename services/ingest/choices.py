@@ -1,0 +1,46 @@
+"""What the operator chose about a session; whatever was not chosen is as the source says."""
+
+from dataclasses import dataclass
+from typing import Any
+
+from schemas.rhythm import KnownRhythm
+from schemas.session import SessionDescription, WalkPath
+from schemas.vocabulary import ESTIMATORS, Task
+from services.ingest.errors import InvalidOption
+
+LONGEST_WALKWAY_M = 100.0
+
+
+@dataclass(frozen=True, slots=True)
+class Choices:
+    """None leaves a choice to the source. Raises InvalidOption for a choice that cannot be had."""
+
+    estimator: str | None = None
+    walk_path: WalkPath | None = None
+    known_rhythms: tuple[KnownRhythm, ...] | None = None
+    task: Task | None = None
+    walkway_m: float | None = None
+
+    def __post_init__(self) -> None:
+        if self.estimator is not None and self.estimator not in ESTIMATORS:
+            raise InvalidOption(f"estimator {self.estimator!r} is unknown; choose one of {', '.join(ESTIMATORS)}")
+        known = self.known_rhythms
+        if known is not None and len({each.kind for each in known}) < len(known):
+            raise InvalidOption("known_rhythms: give at most one previous trial, one previous visit and one exemplar")
+        if self.walkway_m is not None and not 0 < self.walkway_m <= LONGEST_WALKWAY_M:
+            raise InvalidOption(f"walkway {self.walkway_m:g} m: give more than 0 and at most {LONGEST_WALKWAY_M:g} m")
+
+    def applied(self, description: SessionDescription) -> SessionDescription:
+        """A source's description with what was chosen."""
+        chosen: dict[str, Any] = {
+            "estimator": self.estimator,
+            "walk_path": self.walk_path,
+            "known_rhythms": None if self.known_rhythms is None else list(self.known_rhythms),
+            "task": self.task,
+            "walkway_m": self.walkway_m,
+        }
+        return description.model_copy(update={name: value for name, value in chosen.items() if value is not None})
+
+
+AS_THE_SOURCE_SAYS = Choices()
+"""Nothing was chosen."""
