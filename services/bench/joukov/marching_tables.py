@@ -23,8 +23,9 @@ from services.bench.joukov.marching import (
     Tuning,
 )
 from services.bench.joukov.regions import QUANTITIES, WHOLE
-from services.bench.joukov.sections import Table, change, number, power
+from services.bench.joukov.sections import change, power
 from services.bench.joukov.segmentation import percent_error
+from services.bench.report import Table, number
 
 FloatArray = NDArray[np.float64]
 

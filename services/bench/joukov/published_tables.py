@@ -9,7 +9,7 @@ from scipy.stats import wilcoxon
 
 from services.bench.joukov.marching import ESTIMATORS, PLAIN, TITLES, Setting
 from services.bench.joukov.regions import BOTTOM, JOINT_NAMES, QUANTITIES, REGIONS, TOP, RegionErrors
-from services.bench.joukov.sections import Table, number
+from services.bench.report import Table, number
 
 FloatArray = NDArray[np.float64]
 

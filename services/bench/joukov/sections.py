@@ -1,12 +1,10 @@
-"""One experiment of the report: what was done, its figures, tables and charts."""
+"""One experiment of the report, and what it says of the published figures."""
 
 from collections.abc import Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 from typing import NamedTuple
 
-import numpy as np
-
-from services.bench.scoreboard import Row
+from services.bench import report
 
 COLOURS = {
     "truth": "#222222",
@@ -24,21 +22,6 @@ COLOURS = {
 """Of what is drawn in several charts."""
 
 
-@dataclass(frozen=True)
-class Table:
-    """A table of text."""
-
-    caption: str
-    header: Sequence[str]
-    rows: Sequence[Sequence[str]]
-
-    def markdown(self) -> list[str]:
-        """Lines; the first column is aligned left, the others right."""
-        ruler = ["---", *("--:" for _ in self.header[1:])]
-        lines = [self.header, ruler, *self.rows]
-        return [f"**{self.caption}**", "", *(f"| {' | '.join(_cell(c) for c in line)} |" for line in lines)]
-
-
 class Finding(NamedTuple):
     """A figure that the paper reports, and what became of it."""
 
@@ -49,25 +32,10 @@ class Finding(NamedTuple):
 
 
 @dataclass(frozen=True)
-class Section:
-    """One experiment."""
+class Section(report.Section):
+    """One experiment: which parameters were chosen on what and scored on what, and under which S."""
 
-    title: str
-    paragraphs: Sequence[str]
-    """What was done; which parameters were chosen on what and scored on what; under which S."""
-    rows: Sequence[Row]
-    tables: Sequence[Table] = ()
-    charts: dict[str, str] = field(default_factory=dict)
-    """SVG by file name without its ending."""
     findings: Sequence[Finding] = ()
-
-
-def number(value: float) -> str:
-    """About three digits, for a table."""
-    if not np.isfinite(value):
-        return "-"
-    decimals = 0 if abs(value) >= 100 else 1 if abs(value) >= 10 else 2
-    return f"{value:.{decimals}f}"
 
 
 def up_to(S: float | None) -> str:
@@ -84,7 +52,3 @@ def power(S: float) -> str:
 def change(ratio: float) -> str:
     """A ratio as a change in percent."""
     return f"{100.0 * (ratio - 1.0):+.0f} %"
-
-
-def _cell(text: str) -> str:
-    return text.replace("|", "\\|")

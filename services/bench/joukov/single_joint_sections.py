@@ -5,7 +5,7 @@ from collections.abc import Mapping, Sequence
 import numpy as np
 
 from services.bench.joukov.curve import curve_ratio, curve_rows, median_ratio, worst_ratio
-from services.bench.joukov.sections import COLOURS, Finding, Section, Table, change, number, up_to
+from services.bench.joukov.sections import COLOURS, Finding, Section, change, up_to
 from services.bench.joukov.simulation import (
     JERK_EDGES,
     PUBLISHED_DEG,
@@ -17,6 +17,7 @@ from services.bench.joukov.simulation import (
 )
 from services.bench.joukov.study import FIRST, GRID, QUANTITIES, UNITS, Study
 from services.bench.line_chart import line_chart
+from services.bench.report import Table, number
 from services.bench.scoreboard import Row, informative
 
 S_LABEL = "process noise S, (rad/s³)²"

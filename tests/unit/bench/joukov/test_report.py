@@ -6,8 +6,9 @@ import pytest
 
 from services.bench.joukov import board
 from services.bench.joukov.report import write_report
-from services.bench.joukov.sections import Finding, Section, Table, change, number, up_to
+from services.bench.joukov.sections import Finding, Section, change, up_to
 from services.bench.registry import SCOREBOARDS, joukov
+from services.bench.report import Table, number
 from services.bench.scoreboard import at_most, informative
 
 SECTION = Section(
