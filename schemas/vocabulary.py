@@ -77,6 +77,34 @@ class Misplacement(StrEnum):
     OTHER_LEG = "other_leg"
 
 
+class JointCentre(StrEnum):
+    """Joint centres that a depth camera sees and the whole body is fitted to, in the order of every list of them."""
+
+    SPINE_BASE = "spine_base"
+    SPINE_MID = "spine_mid"
+    SPINE_SHOULDER = "spine_shoulder"
+    SHOULDER_RIGHT = "shoulder_right"
+    ELBOW_RIGHT = "elbow_right"
+    WRIST_RIGHT = "wrist_right"
+    SHOULDER_LEFT = "shoulder_left"
+    ELBOW_LEFT = "elbow_left"
+    WRIST_LEFT = "wrist_left"
+    HIP_RIGHT = "hip_right"
+    KNEE_RIGHT = "knee_right"
+    ANKLE_RIGHT = "ankle_right"
+    HIP_LEFT = "hip_left"
+    KNEE_LEFT = "knee_left"
+    ANKLE_LEFT = "ankle_left"
+
+
+class TrackingState(StrEnum):
+    """How a depth camera knows where a joint centre is."""
+
+    NOT_TRACKED = "not_tracked"
+    INFERRED = "inferred"
+    TRACKED = "tracked"
+
+
 class SensorState(StrEnum):
     """What a therapist is told about a sensor."""
 
@@ -105,9 +133,13 @@ FORWARD, UP, RIGHT = (1, 0, 0), (0, 1, 0), (0, 0, 1)
 BACKWARD, DOWN, LEFT = (-1, 0, 0), (0, -1, 0), (0, 0, -1)
 
 
+def _mirrored(side: Side) -> tuple[tuple[int, int, int], tuple[int, int, int]]:
+    # Ab/adduction and axial rotation mirror between the sides; flexion does not, since z points right for both.
+    return (FORWARD, UP) if side is Side.RIGHT else (BACKWARD, DOWN)
+
+
 def _leg(side: Side) -> tuple[DegreeOfFreedom, ...]:
-    # Ab/adduction and axial rotation mirror between the legs; flexion does not, since z points right for both.
-    frontal, axial = (FORWARD, UP) if side is Side.RIGHT else (BACKWARD, DOWN)
+    frontal, axial = _mirrored(side)
     return (
         DegreeOfFreedom(f"hip_flexion_{side}", RIGHT, "thigh forward"),
         DegreeOfFreedom(f"hip_adduction_{side}", frontal, "thigh towards the midline"),
@@ -131,7 +163,35 @@ Zero is the anatomical posture: pelvis level and facing world x, thighs and shan
 The three translations of the pelvis are not observable from inertial sensors and are not reported.
 """
 
-BODY_MODELS: dict[str, tuple[DegreeOfFreedom, ...]] = {"lower_body": LOWER_BODY}
+
+def _arm(side: Side) -> tuple[DegreeOfFreedom, ...]:
+    frontal, axial = _mirrored(side)
+    raising = BACKWARD if side is Side.RIGHT else FORWARD
+    return (
+        DegreeOfFreedom(f"clavicle_elevation_{side}", raising, "shoulder up"),
+        DegreeOfFreedom(f"shoulder_flexion_{side}", RIGHT, "upper arm forward"),
+        DegreeOfFreedom(f"shoulder_adduction_{side}", frontal, "upper arm towards the midline"),
+        DegreeOfFreedom(f"shoulder_internal_rotation_{side}", axial, "front of the upper arm towards the midline"),
+        DegreeOfFreedom(f"elbow_flexion_{side}", RIGHT, "forearm forward"),
+    )
+
+
+WHOLE_BODY: tuple[DegreeOfFreedom, ...] = (
+    *PELVIS_ROTATIONS,
+    *_leg(Side.RIGHT)[:4],
+    *_leg(Side.LEFT)[:4],
+    DegreeOfFreedom("trunk_flexion", LEFT, "chest forward"),
+    *_arm(Side.RIGHT),
+    *_arm(Side.LEFT),
+)
+"""Rotational coordinates of the whole body (Colombel et al. 2020, figure 1: 22 angles, here numbered from 1 as there,
+but the pelvis turns before it tilts and lists, as in LOWER_BODY, and trunk and pelvis flex forward).
+
+Zero is upright, facing world x, arms hanging, collar bones level. Knees and elbows are hinges. A shared name has the
+same axis and sign in every model.
+"""
+
+BODY_MODELS: dict[str, tuple[DegreeOfFreedom, ...]] = {"lower_body": LOWER_BODY, "whole_body": WHOLE_BODY}
 """Model name (as in a joint_state message) -> its degrees of freedom, in order."""
 
 LOWER_BODY_ESTIMATORS: dict[str, str] = {

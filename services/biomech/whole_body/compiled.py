@@ -1,0 +1,23 @@
+"""How the whole body's kernels are compiled."""
+
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any, TypeVar
+
+import numba
+
+from services.biomech.kernels.compiled import sources_fingerprint
+
+Function = TypeVar("Function", bound=Callable[..., Any])
+
+_STAMP = sources_fingerprint(Path(__file__).parent / "kernels")
+
+
+def compiled(function: Function) -> Function:
+    """Compile on first use and keep the machine code on disk until a file of `kernels` changes.
+
+    fastmath presumes finite numbers: centres that are not finite must not reach a kernel.
+    """
+    dispatcher = numba.njit(cache=True, error_model="numpy", nogil=True, fastmath=True)(function)
+    dispatcher._cache._cache_file._source_stamp = _STAMP
+    return dispatcher  # type: ignore[no-any-return]

@@ -1,0 +1,1 @@
+"""Compiled mathematics of the whole body."""
