@@ -31,6 +31,8 @@ class BusControl:
             "known_rhythms": None
             if request.known_rhythms is None
             else [known.model_dump(mode="json") for known in request.known_rhythms],
+            "task": request.task,
+            "walkway_m": request.walkway_m,
         }
         try:
             return SessionDescription.model_validate(self._order("start", order, START_TIMEOUT_S))

@@ -7,19 +7,24 @@ from functools import partial
 
 from schemas.gait import GaitEvent, Stride
 from schemas.health import Health, Progress
+from schemas.kinematics import Calibration
 from schemas.metrics import SessionMetrics
 from schemas.rhythm import LearnedRhythm
 from schemas.session import SessionDescription
 from schemas.signals import (
+    CALIBRATION,
     GAIT_EVENT,
     LEARNED_RHYTHM,
     LIVE_POSE,
     METRICS,
+    REPETITION,
     STRIDE,
+    TASK_PHASE,
     health_key,
     progress_key,
     stream_key,
 )
+from schemas.tasks import Repetition, TaskPhase
 from services.bus.connection import Bus
 from services.bus.health import HealthReporter
 from services.bus.logs import event
@@ -37,7 +42,10 @@ SETTLE_S = 1.0
 SESSION_WORD = 2
 """Place of the session in a stream's key."""
 
-STREAMS = tuple(Stream(signal, signal.producer) for signal in (GAIT_EVENT, STRIDE, LEARNED_RHYTHM, METRICS))
+STREAMS = tuple(
+    Stream(signal, signal.producer)
+    for signal in (CALIBRATION, GAIT_EVENT, STRIDE, TASK_PHASE, REPETITION, LEARNED_RHYTHM, METRICS)
+)
 """Followed in order and without loss, for every session."""
 
 logger = logging.getLogger(__name__)
@@ -140,6 +148,12 @@ class BusFeed:
                 self._live.tell(session, views.event_view(contact))
             case Stride() as stride:
                 self._live.tell(session, views.stride_view(stride))
+            case TaskPhase() as phase:
+                self._live.tell(session, views.phase_view(phase))
+            case Repetition() as repetition:
+                self._live.tell(session, views.repetition_view(repetition))
+            case Calibration() as calibration:
+                self._keeper.calibrated(session, calibration)
             case LearnedRhythm() as rhythm:
                 self._keeper.learned(session, rhythm)
             case SessionMetrics() as metrics:

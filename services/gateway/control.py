@@ -5,6 +5,7 @@ from typing import Literal, Protocol
 
 from schemas.rhythm import KnownRhythm
 from schemas.session import SessionDescription, WalkPath
+from schemas.vocabulary import Task
 
 
 class ControlUnavailable(RuntimeError):
@@ -19,7 +20,7 @@ class ControlRefused(RuntimeError):
 class StartRequest:
     """A session to be started. `speed` None plays as fast as the services follow.
 
-    `estimator`, `walk_path` and `known_rhythms` None are what the source says.
+    `estimator`, `walk_path`, `known_rhythms`, `task` and `walkway_m` None are what the source says.
     """
 
     session: str
@@ -28,6 +29,12 @@ class StartRequest:
     estimator: str | None
     walk_path: WalkPath | None
     known_rhythms: list[KnownRhythm] | None
+    task: Task | None
+    walkway_m: float | None
+
+
+Worn = Literal["lower_body", "knee"]
+"""What the sensors of a source are strapped to: pelvis and both legs, or the thigh and shank of one leg."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -38,6 +45,8 @@ class Source:
     title: str
     kind: Literal["recording", "synthetic"]
     duration_s: float | None
+    worn: Worn | None = None
+    task: Task | None = None
 
 
 class Control(Protocol):
@@ -56,9 +65,14 @@ class Control(Protocol):
         """Recordings that an ingest has at hand."""
 
 
+def _simulated(spec: str, title: str, worn: Worn = "lower_body", task: Task = Task.WALK) -> Source:
+    return Source(f"synthetic:{spec}&duration=120", title, "synthetic", 120.0, worn, task)
+
+
 SYNTHETIC_SOURCES = (
-    Source("synthetic:walk?speed=1.2&seed=1&duration=120", "Walk, comfortable speed", "synthetic", 120.0),
-    Source("synthetic:walk?speed=0.7&seed=2&duration=120", "Walk, slow", "synthetic", 120.0),
-    Source("synthetic:walk?speed=0.9&asymmetry=0.25&seed=3&duration=120", "Walk, uneven sides", "synthetic", 120.0),
+    _simulated("walk?speed=1.2&seed=1", "Walk, comfortable speed"),
+    _simulated("walk?speed=0.7&seed=2", "Walk, slow"),
+    _simulated("walk?speed=0.9&asymmetry=0.25&seed=3", "Walk, uneven sides"),
+    _simulated("walk?worn=1&speed=1.1&seed=4", "Walk, left knee alone", "knee"),
 )
 """Simulated walkers that are always there."""

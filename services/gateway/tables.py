@@ -54,7 +54,10 @@ class SessionRow(Base):
     estimator: Mapped[str] = mapped_column(String(64))
     origin: Mapped[str] = mapped_column(String(16))
     source: Mapped[str | None] = mapped_column(String(300))
+    task: Mapped[str | None] = mapped_column(String(32))
+    walkway_m: Mapped[float | None] = mapped_column(Double)
     metrics: Mapped["MetricsRow | None"] = relationship(lazy="selectin")
+    calibration: Mapped["CalibrationRow | None"] = relationship(lazy="selectin")
 
 
 class MetricsRow(Base):
@@ -64,6 +67,16 @@ class MetricsRow(Base):
 
     session_id: Mapped[str] = mapped_column(ForeignKey("session.id", ondelete="CASCADE"), primary_key=True)
     final: Mapped[bool]
+    received: Mapped[datetime] = mapped_column(UtcTime)
+    body: Mapped[dict[str, Any]] = mapped_column(JSON)
+
+
+class CalibrationRow(Base):
+    """The last calibration of a session, as it came (schemas.kinematics.Calibration)."""
+
+    __tablename__ = "session_calibration"
+
+    session_id: Mapped[str] = mapped_column(ForeignKey("session.id", ondelete="CASCADE"), primary_key=True)
     received: Mapped[datetime] = mapped_column(UtcTime)
     body: Mapped[dict[str, Any]] = mapped_column(JSON)
 

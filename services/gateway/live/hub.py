@@ -13,11 +13,14 @@ from schemas.kinematics import LivePose
 from schemas.session import SessionDescription
 from services.gateway.health.board import HealthBoard
 from services.gateway.live import views
+from services.gateway.live.memory import Memory
 from services.gateway.live.viewer import GOING_AWAY, NORMAL, Viewer
 from services.gateway.live.views import View
 from services.gateway.parameters import GatewayParameters
 
 log = logging.getLogger(__name__)
+
+_CARD_HEAD = ("id", "title", "patient", "task", "estimator", "started_unix_s", "duration_s")
 
 
 class NotLive(LookupError):
@@ -42,8 +45,7 @@ class LiveSession:
 
     description: SessionDescription
     patient: str | None = None
-    metrics: View | None = None
-    strides: dict[str, View] = field(default_factory=dict)
+    memory: Memory = field(default_factory=Memory)
     viewers: set[Viewer] = field(default_factory=set)
     task: asyncio.Task[None] | None = None
 
@@ -113,9 +115,8 @@ class LiveHub:
             raise NotLive(session)
         viewer = self._new_viewer()
         live.viewers.add(viewer)
-        for view in (views.session_view(live.description, live.patient), live.metrics, *live.strides.values()):
-            if view is not None:
-                viewer.tell(views.encode(view))
+        for view in (views.session_view(live.description, live.patient), *live.memory):
+            viewer.tell(views.encode(view))
         if live.task is None:
             live.task = asyncio.get_running_loop().create_task(self._show_poses(session, live))
         try:
@@ -173,10 +174,7 @@ class LiveHub:
         live = self._sessions.get(session)
         if live is None:
             return
-        if view["kind"] == "metrics":
-            live.metrics = view
-        elif view["kind"] == "stride":
-            live.strides[view["side"]] = view
+        live.memory.keep(view)
         text = views.encode(view)
         for viewer in live.viewers:
             viewer.tell(text)
@@ -248,7 +246,7 @@ class LiveHub:
         pose = None if newest is None else self._decode(session, newest)
         head = views.session_view(live.description, live.patient)
         return {
-            **{name: head[name] for name in ("id", "title", "patient", "estimator", "started_unix_s", "duration_s")},
+            **{name: head[name] for name in _CARD_HEAD},
             "sensor_segments": {sensor["name"]: sensor["segment"] for sensor in head["sensors"]},
             "age_s": self._age_s(session),
             "elapsed_s": None if pose is None else views.seconds(pose.captured_ns),
@@ -256,5 +254,8 @@ class LiveHub:
             "message": None if pose is None else pose.message,
             "sensors": [] if pose is None else views.sensor_views(pose),
             "cadence_per_min": None if pose is None else pose.cadence_per_min,
-            "strides": sum(view["index"] + 1 for view in live.strides.values()),
+            "strides": sum(view["index"] + 1 for view in live.memory.of("stride")),
+            "repetitions": sum(view["index"] + 1 for view in live.memory.of("repetition")),
+            "task_phases": live.memory.of("task_phase"),
+            "misplaced": next((view["misplaced"] for view in live.memory.of("calibration")), {}),
         }

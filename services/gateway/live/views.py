@@ -4,9 +4,10 @@ import json
 from typing import Any
 
 from schemas.gait import GaitEvent, Stride
-from schemas.kinematics import LivePose
+from schemas.kinematics import Calibration, LivePose
 from schemas.metrics import Metric, SessionMetrics
 from schemas.session import SessionDescription
+from schemas.tasks import Repetition, TaskPhase
 
 View = dict[str, Any]
 
@@ -31,6 +32,8 @@ def session_view(description: SessionDescription, patient: str | None) -> View:
         "patient": patient,
         "origin": description.origin,
         "protocol": description.protocol,
+        "task": description.task,
+        "walkway_m": description.walkway_m,
         "estimator": description.estimator,
         "walk_path": description.walk_path,
         "started_unix_s": round(description.started_unix_ns / 1e9, 3),
@@ -119,6 +122,49 @@ def stride_view(stride: Stride) -> View:
         "turning": stride.turning,
         "valid": stride.valid,
         "rejected_because": stride.rejected_because,
+    }
+
+
+def calibration_view(calibration: Calibration) -> View:
+    """What zero means, and what is worn otherwise than declared."""
+    return {
+        "kind": "calibration",
+        "datum": calibration.datum,
+        "quality": calibration.quality,
+        "misplaced": calibration.model_dump(mode="json", include={"misplaced"})["misplaced"],
+    }
+
+
+def phase_view(phase: TaskPhase) -> View:
+    """A phase of a timed test that begins or has ended."""
+    return {
+        "kind": "task_phase",
+        "task": phase.task,
+        "attempt": phase.attempt,
+        "phase": phase.phase,
+        "start_s": seconds(phase.start_ns),
+        "start_std_s": phase.start_std_s,
+        "end_s": None if phase.end_ns is None else seconds(phase.end_ns),
+        "end_std_s": phase.end_std_s,
+    }
+
+
+def repetition_view(repetition: Repetition) -> View:
+    """A repetition of an exercise."""
+    return {
+        "kind": "repetition",
+        "degree_of_freedom": repetition.degree_of_freedom,
+        "side": repetition.side,
+        "index": repetition.index,
+        "start_s": seconds(repetition.start_ns),
+        "turn_s": seconds(repetition.turn_ns),
+        "end_s": seconds(repetition.end_ns),
+        "start_angle": repetition.start_angle,
+        "turn_angle": repetition.turn_angle,
+        "end_angle": repetition.end_angle,
+        "angle_std": repetition.angle_std,
+        "valid": repetition.valid,
+        "rejected_because": repetition.rejected_because,
     }
 
 

@@ -8,6 +8,7 @@ from functools import partial
 
 from sqlalchemy.exc import SQLAlchemyError
 
+from schemas.kinematics import Calibration
 from schemas.metrics import SessionMetrics
 from schemas.rhythm import LearnedRhythm
 from schemas.session import SessionDescription
@@ -59,6 +60,11 @@ class SessionKeeper:
             self._finished.add(session)
             self.live.close(session, SessionState.FINISHED)
 
+    def calibrated(self, session: str, calibration: Calibration) -> None:
+        """The sensors were found to sit so; also when that has changed."""
+        self.live.tell(session, views.calibration_view(calibration))
+        self._write((session, "calibration"), partial(self._record_calibration, session, calibration))
+
     def learned(self, session: str, rhythm: LearnedRhythm) -> None:
         """What the session's rhythm has learned so far; the patient's next session starts from it."""
         self._write((session, "rhythm"), partial(self._record_rhythm, session, rhythm))
@@ -98,6 +104,10 @@ class SessionKeeper:
     def _record_metrics(self, session: str, metrics: SessionMetrics) -> None:
         with self.database.transaction() as database:
             records.record_metrics(database, session, metrics)
+
+    def _record_calibration(self, session: str, calibration: Calibration) -> None:
+        with self.database.transaction() as database:
+            records.record_calibration(database, session, calibration)
 
     def _record_rhythm(self, session: str, rhythm: LearnedRhythm) -> None:
         with self.database.transaction() as database:

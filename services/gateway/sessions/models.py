@@ -8,7 +8,7 @@ from pydantic import AfterValidator, BaseModel, ConfigDict, Field
 
 from schemas.gait import CURVE_POINTS
 from schemas.session import WalkPath
-from schemas.vocabulary import ESTIMATORS
+from schemas.vocabulary import ESTIMATORS, Misplacement, Side, Task, TaskPhaseKind
 
 Code = Annotated[str, Field(pattern="^[0-9A-Z]{1,16}$", description="patient code", examples=["K7QM3F"])]
 
@@ -53,6 +53,16 @@ class SessionIn(BaseModel):
         description="straight: treadmill, in place, or a corridor without a turn; turning: anywhere; null for what"
         " the source says, else turning",
         examples=["turning"],
+    )
+    task: Task | None = Field(
+        default=None, description="what the person is asked to do; null for what the source says", examples=["walk"]
+    )
+    walkway_m: float | None = Field(
+        default=None,
+        gt=0,
+        le=100,
+        description="m from start to turning point of a timed up and go; null for what the source says",
+        examples=[3.0],
     )
     patient: Code | None = Field(default=None, description="patient code; null to link it later")
 
@@ -116,6 +126,15 @@ class SessionOut(BaseModel):
     estimator: str = Field(examples=["rhythmic_ekf"])
     origin: str = Field(description="recording, archive, synthetic or device", examples=["synthetic"])
     source: str | None = Field(description="as asked for; null when it started by itself", examples=["synthetic:walk"])
+    task: Task | None = Field(description="what the person is asked to do; null before the start", examples=["walk"])
+    walkway_m: float | None = Field(description="m from start to turning point of a timed test", examples=[None])
+    datum: str | None = Field(
+        description="what an angle of zero means; null before the calibration",
+        examples=["quiet standing, both segments vertical"],
+    )
+    misplaced: dict[Side, list[Misplacement]] = Field(
+        description="legs whose sensors are worn otherwise than declared", examples=[{"left": ["swapped"]}]
+    )
     highlights: Highlights | None = Field(description="null before the first metrics")
 
 
@@ -176,3 +195,61 @@ class CurvesOut(BaseModel):
     session: str = Field(description="session id", examples=["8d0c2a71f04be655"])
     final: bool = Field(description="false while the session runs")
     curves: list[CurveOut]
+
+
+class PhaseOut(BaseModel):
+    """One phase of a timed test."""
+
+    model_config = ConfigDict(extra="forbid")
+
+    task: Task = Field(examples=["timed_up_and_go"])
+    attempt: int = Field(ge=0, description="number of attempts before it in this session", examples=[0])
+    phase: TaskPhaseKind = Field(examples=["sit_to_stand"])
+    start_s: float = Field(ge=0, description="s of session time", examples=[5.12])
+    start_std_s: float = Field(ge=0, description="s, one standard deviation", examples=[0.04])
+    end_s: float | None = Field(description="s of session time; null while it runs", examples=[6.87])
+    end_std_s: float | None = Field(description="s, one standard deviation", examples=[0.05])
+    duration_s: float | None = Field(description="s; null while it runs", examples=[1.75])
+    duration_std_s: float | None = Field(
+        description="s, one standard deviation: those of start and end, taken as independent", examples=[0.06]
+    )
+
+
+class PhasesOut(BaseModel):
+    """All phases of a session's timed tests."""
+
+    model_config = ConfigDict(extra="forbid")
+
+    session: str = Field(description="session id", examples=["8d0c2a71f04be655"])
+    final: bool = Field(description="false while the session runs")
+    phases: list[PhaseOut] = Field(description="by attempt, in the order in which they are done; the first 500")
+
+
+class RepetitionOut(BaseModel):
+    """One repetition of an exercise: there and back."""
+
+    model_config = ConfigDict(extra="forbid")
+
+    degree_of_freedom: str = Field(examples=["knee_flexion_left"])
+    side: Side = Field(examples=["left"])
+    index: int = Field(ge=0, description="number of this joint's repetitions before it", examples=[3])
+    start_s: float = Field(ge=0, description="s of session time", examples=[12.1])
+    turn_s: float = Field(ge=0, description="s of session time: the angle farthest from both ends", examples=[13.3])
+    end_s: float = Field(ge=0, description="s of session time", examples=[14.6])
+    start_angle: float = Field(description="rad", examples=[0.05])
+    turn_angle: float = Field(description="rad", examples=[1.92])
+    end_angle: float = Field(description="rad", examples=[0.07])
+    angle_std: float = Field(ge=0, description="rad, mean standard deviation of the angle", examples=[0.02])
+    largest_velocity: float = Field(ge=0, description="rad/s, either way", examples=[2.4])
+    valid: bool
+    rejected_because: str | None = Field(description="why it does not count in metrics", examples=[None])
+
+
+class RepetitionsOut(BaseModel):
+    """All repetitions of a session."""
+
+    model_config = ConfigDict(extra="forbid")
+
+    session: str = Field(description="session id", examples=["8d0c2a71f04be655"])
+    final: bool = Field(description="false while the session runs")
+    repetitions: list[RepetitionOut] = Field(description="in order; the first 1000")

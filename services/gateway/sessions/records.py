@@ -7,12 +7,13 @@ from typing import Any
 from sqlalchemy import Select, func, select
 from sqlalchemy.orm import Session
 
+from schemas.kinematics import Calibration
 from schemas.metrics import SessionMetrics
 from schemas.session import SessionDescription
 from schemas.vocabulary import ESTIMATORS
 from services.gateway.problems import not_found
 from services.gateway.sessions.models import SessionIn, SessionState
-from services.gateway.tables import MetricsRow, SessionRow
+from services.gateway.tables import CalibrationRow, MetricsRow, SessionRow
 
 DEFAULT_ESTIMATOR = "rhythmic_ekf"
 REASON_LENGTH = 500
@@ -39,6 +40,8 @@ def add_requested(database: Session, session: str, wish: SessionIn) -> SessionRo
         estimator=wish.estimator or DEFAULT_ESTIMATOR,
         origin="synthetic" if wish.source.startswith("synthetic:") else "recording",
         source=wish.source,
+        task=wish.task,
+        walkway_m=wish.walkway_m,
     )
     database.add(row)
     return row
@@ -54,6 +57,7 @@ def record_start(database: Session, description: SessionDescription) -> SessionR
     row.protocol = description.protocol[:100]
     row.estimator = description.estimator[:64]
     row.origin = description.origin
+    row.task, row.walkway_m = description.task, description.walkway_m
     row.started = datetime.fromtimestamp(description.started_unix_ns / 1e9, UTC)
     if row.state != SessionState.FINISHED:
         row.state, row.reason, row.ended = SessionState.LIVE, None, None
@@ -77,6 +81,15 @@ def record_metrics(database: Session, session: str, metrics: SessionMetrics) -> 
     if metrics.final:
         row.state, row.reason = SessionState.FINISHED, None
         _set_length(row, metrics.captured_ns / 1e9)
+    return True
+
+
+def record_calibration(database: Session, session: str, calibration: Calibration) -> bool:
+    """Keep a session's newest calibration. False when the session is not known."""
+    if database.get(SessionRow, session) is None:
+        return False
+    body = calibration.model_dump(mode="json")
+    database.merge(CalibrationRow(session_id=session, received=datetime.now(UTC), body=body))
     return True
 
 

@@ -19,6 +19,8 @@ from services.gateway.sessions.models import (
     MarkIn,
     MarkOut,
     MetricsOut,
+    PhasesOut,
+    RepetitionsOut,
     SessionIn,
     SessionLink,
     SessionOut,
@@ -48,9 +50,10 @@ def start_session(body: SessionIn, gateway: Context) -> SessionOut:
             get_patient(database, body.patient)
             known = known_rhythms(database, body.patient, datetime.now(UTC))
         records.add_requested(database, session, body)
-    description = _ask_for_start(
-        gateway, StartRequest(session, body.source, body.speed, body.estimator, body.walk_path, known)
+    order = StartRequest(
+        session, body.source, body.speed, body.estimator, body.walk_path, known, body.task, body.walkway_m
     )
+    description = _ask_for_start(gateway, order)
     with gateway.database.transaction() as database:
         row = records.record_start(database, description)
         database.flush()
@@ -146,6 +149,18 @@ def read_metrics(session: SessionId, gateway: Context) -> MetricsOut:
 def read_curves(session: SessionId, gateway: Context) -> CurvesOut:
     """Mean curves over the stride with their spread, final or so far."""
     return shapes.curves_out(session, _metrics_of(gateway, session))
+
+
+@router.get("/{session}/phases", responses=documented(HTTPStatus.NOT_FOUND))
+def read_phases(session: SessionId, gateway: Context) -> PhasesOut:
+    """Phases of the session's timed tests, all or so far; the running one has no end. Empty for other tasks."""
+    return shapes.phases_out(session, _metrics_of(gateway, session))
+
+
+@router.get("/{session}/repetitions", responses=documented(HTTPStatus.NOT_FOUND))
+def read_repetitions(session: SessionId, gateway: Context) -> RepetitionsOut:
+    """Repetitions of an exercise in order, once the session is over. Empty before that, and for other tasks."""
+    return shapes.repetitions_out(session, _metrics_of(gateway, session))
 
 
 def _metrics_of(gateway: Gateway, session: str) -> SessionMetrics:

@@ -5,8 +5,9 @@ from typing import Literal
 from fastapi import APIRouter
 from pydantic import BaseModel, ConfigDict, Field
 
+from schemas.vocabulary import KNEE_ESTIMATORS, Task
 from services.gateway.context import Context
-from services.gateway.control import SYNTHETIC_SOURCES, ControlUnavailable
+from services.gateway.control import SYNTHETIC_SOURCES, ControlUnavailable, Worn
 from services.gateway.problems import documented
 from services.gateway.sessions.records import DEFAULT_ESTIMATOR, known_estimators
 
@@ -22,6 +23,8 @@ class SourceOut(BaseModel):
     title: str = Field(examples=["Walk, comfortable speed"])
     kind: Literal["recording", "synthetic"]
     duration_s: float | None = Field(description="s; null when unknown", examples=[120.0])
+    worn: Worn | None = Field(description="where its sensors are; null when unknown", examples=["lower_body"])
+    task: Task | None = Field(description="what the person does; null when unknown", examples=["walk"])
 
 
 class EstimatorOut(BaseModel):
@@ -31,7 +34,8 @@ class EstimatorOut(BaseModel):
 
     name: str = Field(examples=["rhythmic_ekf"])
     meaning: str = Field(examples=["EKF with the jerk of a rhythm model"])
-    default: bool
+    default: bool = Field(description="of a whole lower body; a single knee has a default of its own")
+    worn: Worn = Field(description="what it is made for", examples=["lower_body"])
 
 
 class SourcesOut(BaseModel):
@@ -52,11 +56,23 @@ def list_sources(gateway: Context) -> SourcesOut:
     except ControlUnavailable:
         recordings, ready = [], False
     sources = [
-        SourceOut(id=each.id, title=each.title, kind=each.kind, duration_s=each.duration_s)
+        SourceOut(
+            id=each.id,
+            title=each.title,
+            kind=each.kind,
+            duration_s=each.duration_s,
+            worn=each.worn,
+            task=each.task,
+        )
         for each in (*recordings, *SYNTHETIC_SOURCES)
     ]
     estimators = [
-        EstimatorOut(name=name, meaning=meaning, default=name == DEFAULT_ESTIMATOR)
+        EstimatorOut(
+            name=name,
+            meaning=meaning,
+            default=name == DEFAULT_ESTIMATOR,
+            worn="knee" if name in KNEE_ESTIMATORS else "lower_body",
+        )
         for name, meaning in known_estimators().items()
     ]
     return SourcesOut(ready=ready, sources=sources, estimators=estimators)

@@ -78,8 +78,8 @@ def test_a_late_viewer_gets_the_last_numbers_at_once(client, gateway, hub, made)
     hub.tell("a", views.stride_view(made.stride_at(9.0, "right", 4)))
     gateway.keeper.measured("a", made.metrics_at(9.0, final=False))
     with client.websocket_connect("/v1/live/a") as socket:
-        assert read_until(socket, "metrics")["at_s"] == 9.0
         assert read_until(socket, "stride")["index"] == 4
+        assert read_until(socket, "metrics")["at_s"] == 9.0
 
 
 def test_the_end_of_a_session_is_told_and_closes_normally(client, gateway, made):

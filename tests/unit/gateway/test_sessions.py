@@ -187,7 +187,9 @@ def test_a_finished_session_has_its_length_and_highlights(client, gateway, made)
     assert told["highlights"] == {"walking_speed": 1.08, "cadence_per_min": 109.1, "strides": 24}
 
 
-@pytest.mark.parametrize("part", ["", "/metrics", "/curves", "/recordings", "/recordings/raw.mcap"])
+@pytest.mark.parametrize(
+    "part", ["", "/metrics", "/curves", "/phases", "/repetitions", "/recordings", "/recordings/raw.mcap"]
+)
 def test_an_unknown_session_is_not_found(client, part):
     answer = client.get(f"/v1/sessions/nobody{part}")
     assert answer.status_code == HTTPStatus.NOT_FOUND

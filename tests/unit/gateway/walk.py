@@ -3,10 +3,10 @@
 import math
 
 from schemas.gait import CURVE_POINTS, GaitEvent, Stride, StrideCurve
-from schemas.kinematics import LivePose, SegmentPose, SensorStatus
+from schemas.kinematics import Calibration, LivePose, SegmentPose, SensorStatus
 from schemas.metrics import MeanCurve, Metric, SessionMetrics
 from schemas.session import Anthropometry, HubDescription, Placement, SensorDescription, SessionDescription
-from schemas.vocabulary import GaitEventKind, Segment, SensorState, Side
+from schemas.vocabulary import GaitEventKind, Misplacement, Segment, SensorState, Side
 
 WORN = (Segment.PELVIS, Segment.THIGH_LEFT, Segment.SHANK_LEFT, Segment.THIGH_RIGHT, Segment.SHANK_RIGHT)
 THIGH_M, SHANK_M, HIPS_M = 0.42, 0.41, 0.18
@@ -79,6 +79,13 @@ def pose_at(at_s: float, lost: str | None = None, phase: str = "estimating", mes
     return LivePose(
         captured_ns=round(at_s * 1e9), phase=phase, message=message, notice="", segments=segments, angles=angles,
         angles_std=stds, sensors=sensors, cadence_per_min=109.0 if phase == "estimating" else None,
+    )  # fmt: skip
+
+
+def calibration_of(misplaced: dict[Side, list[Misplacement]]) -> Calibration:
+    return Calibration(
+        model="lower_body", estimator="rhythmic_ekf", method="standing", datum="quiet standing", quality=0.8,
+        sensors=[], events_from={}, unused={}, misplaced=misplaced,
     )  # fmt: skip
 
 

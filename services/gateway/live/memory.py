@@ -1,0 +1,38 @@
+"""What a viewer who comes late must know of a session: the last of each kind, not all that happened."""
+
+from collections.abc import Iterator
+
+from services.gateway.live.views import View
+
+
+class Memory:
+    """Bounded: one view per kind, side or joint, and the phases of one attempt."""
+
+    def __init__(self) -> None:
+        self._views: dict[tuple[str, ...], View] = {}
+
+    def __iter__(self) -> Iterator[View]:
+        return iter(self._views.values())
+
+    def of(self, kind: str) -> list[View]:
+        """What is remembered of one kind."""
+        return [view for view in self if view["kind"] == kind]
+
+    def keep(self, view: View) -> None:
+        """Remember a view in place of the one before it, if it is of a kind that matters later."""
+        match view["kind"]:
+            case "metrics" | "calibration" as kind:
+                self._views[kind,] = view
+            case "stride":
+                self._views["stride", view["side"]] = view
+            case "repetition":
+                self._views["repetition", view["degree_of_freedom"]] = view
+            case "task_phase":
+                self._keep_phase(view)
+
+    def _keep_phase(self, view: View) -> None:
+        newest = max((each["attempt"] for each in self.of("task_phase")), default=view["attempt"])
+        if view["attempt"] > newest:
+            self._views = {key: each for key, each in self._views.items() if each["kind"] != "task_phase"}
+        if view["attempt"] >= newest:
+            self._views["task_phase", view["phase"]] = view
