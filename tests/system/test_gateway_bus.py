@@ -99,9 +99,9 @@ def test_a_gateway_that_comes_late_catches_up_from_the_rings(settings, closing, 
 
     listening = closing(Listening(settings, tmp_path))
     wait(lambda: listening.hub.is_live("a"), "the session is seen")
-    live = listening.hub._sessions["a"]
-    wait(lambda: live.strides.get("left", {}).get("index") == 4, "the last stride is known")
-    wait(lambda: live.metrics is not None and live.metrics["at_s"] == 7.0, "the numbers are known")
+    memory = listening.hub._sessions["a"].memory
+    wait(lambda: [each["index"] for each in memory.of("stride")] == [4], "the last stride is known")
+    wait(lambda: [each["at_s"] for each in memory.of("metrics")] == [7.0], "the numbers are known")
 
 
 def test_health_is_heard_and_its_end_too(settings, closing, tmp_path):
@@ -145,7 +145,7 @@ def test_orders_reach_the_ingest_and_refusals_come_back(settings, closing, tmp_p
         control.stop("b")
     assert control.mark("a", 3.0, 12.5) == (9.5, 12.5)
     start, mark = dict(orders)["start"], dict(orders)["mark"]
-    chosen = {"estimator": None, "walk_path": None, "known_rhythms": None}
+    chosen = dict.fromkeys(("estimator", "walk_path", "known_rhythms", "task", "walkway_m"))
     assert start == {"session": "a", "source": "synthetic:walk", "speed": 1.0} | chosen
     assert mark == {"session": "a", "last_s": 3.0, "at_s": 12.5}
 
