@@ -1,6 +1,6 @@
-"""A plain line chart as SVG text."""
+"""A plain chart of lines and dots as SVG text."""
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Collection, Mapping, Sequence
 from html import escape
 from itertools import groupby
 from math import floor, isfinite, log10
@@ -25,6 +25,7 @@ def line_chart(
     from_zero: bool = True,
     levels: Mapping[str, float] | None = None,
     colours: Mapping[str, str] | None = None,
+    dots: Collection[str] = (),
 ) -> str:
     """An SVG document with one line per entry of `lines`, the first on top.
 
@@ -37,6 +38,7 @@ def line_chart(
         from_zero: whether the y axis begins at zero.
         levels: y of dashed levels across the chart, by name.
         colours: of lines by name; the others take their turn in COLOURS.
+        dots: names whose points are not joined.
 
     Raises:
         ValueError: there is nothing to draw.
@@ -61,7 +63,8 @@ def line_chart(
     for i, (name, line) in reversed(list(enumerate(lines.items()))):
         drawn = [place(log10(x) if log_x else x, y) if isfinite(y) else None for x, y in line]
         colour = colours.get(name, COLOURS[i % len(COLOURS)])
-        parts += _line(drawn, colour) + _legend(colour, name, i)
+        parts += _dots(drawn, colour) if name in dots else _line(drawn, colour)
+        parts += _legend(colour, name, i)
     parts += _labels(x_label, y_label)
     size = f'width="{WIDTH}" height="{HEIGHT}" viewBox="0 0 {WIDTH} {HEIGHT}"'
     head = f'<svg xmlns="http://www.w3.org/2000/svg" {size} font-family="sans-serif">'
@@ -109,6 +112,11 @@ def _line(points: Sequence[tuple[float, float] | None], colour: str) -> list[str
     if len(points) <= FEW:
         parts += [f'<circle cx="{x:.1f}" cy="{y:.1f}" r="2.8" fill="{colour}"/>' for piece in pieces for x, y in piece]
     return parts
+
+
+def _dots(points: Sequence[tuple[float, float] | None], colour: str) -> list[str]:
+    circles = [f'<circle cx="{x:.1f}" cy="{y:.1f}" r="1.8"/>' for x, y in filter(None, points)]
+    return [f'<g fill="{colour}" fill-opacity="0.45">', *circles, "</g>"]
 
 
 def _polyline(points: Sequence[tuple[float, float]], colour: str, dashes: str = "") -> str:

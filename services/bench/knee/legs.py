@@ -44,6 +44,7 @@ class Sensors:
     rate_noise: float = 0.0  # rad/s a sample
     force_noise: float = 0.0  # m/s^2 a sample
     soft_tissue: float = 0.0  # rad: wobble of the thigh's sensor, in step with the knee
+    sliding: Array = field(default_factory=lambda: np.zeros((2, 3)))  # rad: of either sensor about its segment's axes
 
 
 class LegRecording(NamedTuple):
@@ -132,7 +133,7 @@ def record(
     draw = np.random.default_rng(seed)
     rate, force = np.empty((len(t), 2, 3)), np.empty((len(t), 2, 3))
     for s in range(2):
-        now, before = _orientation(motion, sensors, s, t), _orientation(motion, sensors, s, t - 1.0 / rate_hz)
+        now, before = orientation(motion, sensors, s, t), orientation(motion, sensors, s, t - 1.0 / rate_hz)
         rate[:, s] = (before.inv() * now).as_rotvec() * rate_hz + sensors.gyro_bias[s]
         points = [_position(motion, s, t + k * STEP_S) for k in (-1, 0, 1)]
         acceleration = (points[0] - 2.0 * points[1] + points[2]) / STEP_S**2
@@ -148,14 +149,18 @@ def _segment(motion: Motion, segment: int, t: Array) -> Rotation:
     return Rotation.from_euler("YXZ", np.stack([motion.heading(t), motion.lean(t), bent], axis=1))
 
 
-def _orientation(motion: Motion, sensors: Sensors, s: int, t: Array) -> Rotation:
-    """World from sensor. The thigh's sensor wobbles about its segment's z and x axes in step with the knee."""
-    turned = _segment(motion, s, t)
+def orientation(motion: Motion, sensors: Sensors, s: int, t: Array) -> Rotation:
+    """World from sensor `s` at times t (n,) in s, as `record` has it."""
+    return _segment(motion, s, t) * segment_from_sensor(motion, sensors, s, t)
+
+
+def segment_from_sensor(motion: Motion, sensors: Sensors, s: int, t: Array) -> Rotation:
+    """How the sensor lies on its bone: it wobbles about its segment's axes in step with the knee."""
+    bend, mounted = motion.knee(t), Rotation.from_matrix(sensors.R_sensor_from_segment[s].T)
+    wobble = sensors.sliding[s] * np.stack([np.sin(3.0 * bend), np.sin(2.0 * bend), np.cos(4.0 * bend)], 1)
     if s == 0 and sensors.soft_tissue > 0.0:
-        bend = motion.knee(t)
-        wobble = sensors.soft_tissue * np.stack([0.7 * np.sin(3.0 * bend), np.sin(2.0 * bend), np.cos(4.0 * bend)], 1)
-        turned = turned * Rotation.from_rotvec(wobble)
-    return turned * Rotation.from_matrix(sensors.R_sensor_from_segment[s].T)
+        wobble += sensors.soft_tissue * np.stack([0.7 * np.sin(3.0 * bend), np.sin(2.0 * bend), np.cos(4.0 * bend)], 1)
+    return Rotation.from_rotvec(wobble) * mounted
 
 
 def _position(motion: Motion, s: int, t: Array) -> Array:

@@ -153,3 +153,9 @@ def test_charts_are_drawings():
 def test_a_number_of_motions_is_asked_for():
     with pytest.raises(ValueError, match="number of motions"):
         joukov(None, "neura")
+
+
+def test_dots_are_not_joined():
+    svg = line_chart("dots", "x", "y", {"one": [(0.0, 1.0), (1.0, 2.0)], "fit": [(0.0, 1.0), (1.0, 2.0)]}, dots={"one"})
+    assert svg.count("<polyline") == 1
+    assert svg.count('r="1.8"') == 2
