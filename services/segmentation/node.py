@@ -7,6 +7,7 @@ from schemas.kinematics import JointState, SegmentMotion
 from schemas.rhythm import Rhythm
 from schemas.session import SessionDescription
 from schemas.signals import GAIT_EVENT, REPETITION, STRIDE, TASK_PHASE, Signal
+from schemas.vocabulary import Task
 from services.biomech.event_sources import lone_segments, worn_segments
 from services.flow.message import Message, Output, Stream
 from services.flow.node import Node, State
@@ -15,6 +16,7 @@ from services.segmentation.gait.segmenter import GaitSegmenter
 from services.segmentation.intake import JOINTS_FROM, MOTION_FROM, RHYTHM_FROM, Intake
 from services.segmentation.pairing import Pairing, Together
 from services.segmentation.parameters import SegmentationParameters
+from services.segmentation.repetitions.segmenter import RepetitionSegmenter
 
 DEFAULTS = SegmentationParameters()
 
@@ -40,7 +42,10 @@ class Segmenter(Protocol):
 
 def segmenters(description: SessionDescription, parameters: SegmentationParameters) -> dict[str, Segmenter]:
     """Those that the task of a session needs, by name."""
-    return {"gait": GaitSegmenter(description, parameters)}
+    found: dict[str, Segmenter] = {"gait": GaitSegmenter(description, parameters)}
+    if description.task is Task.KNEE_FLEXION:
+        found["repetitions"] = RepetitionSegmenter()
+    return found
 
 
 class SegmentationNode:

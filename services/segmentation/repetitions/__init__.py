@@ -1,0 +1,1 @@
+"""Repetitions of an exercise of the knee."""

@@ -1,0 +1,61 @@
+"""Everything that can be tuned in repetitions: unit, default, where the default comes from."""
+
+from dataclasses import dataclass
+
+
+@dataclass(frozen=True, slots=True)
+class RepetitionParameters:
+    """Chosen on synthetic exercises (seeds below 100); `ambula bench repetitions` scores others."""
+
+    smoothing_s: float = 0.2
+    """s over which the angle is averaged before turns are looked for: one period of a tremor of 5 Hz, of which
+    nothing is left; of one of 4 or 6 Hz a quarter and a sixth."""
+
+    turn_floor: float = 0.15
+    """rad (8.6 deg) that the angle must come back for a turn to be one, in whoever moves little. Above what soft
+    tissue makes of a muscle that tightens (5 deg), below the 20 deg of a freshly operated knee (proposal)."""
+    turn_share: float = 0.2
+    """share of the person's own median range that it must come back; hesitations are smaller (proposal)."""
+    memory: int = 7
+    """excursions whose median range is the person's own."""
+    least_memory: int = 3
+    """excursions from which on there is such a median; as many as a mean needs."""
+
+    still_band: float = 0.04
+    """rad (2.3 deg) within which a resting knee stays; a smoothed tremor of 3 deg does."""
+    still_s: float = 0.5
+    """s within that band after which the knee rests. 0.1 repetitions per second of 60 deg cross it in 0.3 s."""
+    return_share: float = 0.5
+    """share of the way that must be made back before a new movement outward is another repetition; less is a
+    hesitation (proposal)."""
+    rested_share: float = 0.8
+    """the same before coming to rest ends a repetition; a pause further out is a hesitation (proposal)."""
+    longest_hold_s: float = 15.0
+    """s of rest at the far side after which it is a new resting position, not a hold; 5 to 10 s are prescribed."""
+
+    ends_share: float = 0.4
+    """share of the range by which both ends may differ; beyond it one end was not the resting side (proposal)."""
+    partial_share: float = 0.5
+    """share of the person's own median range below which a repetition is partial (proposal)."""
+    shortest_s: float = 0.3
+    """s; twice as fast as the fastest cycling (1.5 per second)."""
+    longest_s: float = 30.0
+    """s; three times the slowest exercise (0.1 per second)."""
+    longest_gap_s: float = 0.2
+    """s without samples that a repetition may contain; one smoothing."""
+
+    posture_change: float = 0.6
+    """rad (34 deg) by which the thigh's inclination may differ between both ends; sitting down turns it by 60 and
+    more, squats and slides bring it back (proposal)."""
+    step_swing: float = 0.4
+    """rad (23 deg) by which the thigh is further forward while the knee extends than while it flexes, from which on
+    it was a step: 40 deg in walking; exercises take the same way back (proposal)."""
+
+    onset_share: float = 0.1
+    """share of a way's largest speed below which it has not begun or is over."""
+    onset_reach: float = 0.15
+    """share of the range from the resting end within which that is looked for, so that a hesitation is no end."""
+    held_share: float = 0.05
+    """share of the range within which the knee is at its turn."""
+    margin_s: float = 0.5
+    """s of angles kept before a movement."""
