@@ -19,6 +19,7 @@ from numpy.typing import NDArray
 from services.biomech.two_sensor_knee.compiled import compiled
 from services.biomech.two_sensor_knee.flexion import (
     angle_deviation,
+    angle_of_verticals,
     follow_angle,
     settle,
     take_standing,
@@ -218,6 +219,31 @@ class KneeAxis:
         knee["zero"], knee["is_zero_set"] = knee["angle"], 1.0
         self._reading[0, OUTPUTS.index("datum")] = DATUMS.index(Datum.SET)
 
+    def declare_standing(self, up: NDArray[np.float64]) -> None:
+        """0 is where both verticals, up (2, 3) in the frame of each sensor, are one; nothing before there is an angle.
+
+        Unlike `declare_zero` it may be told of a pose long ago, and again when the axes have become better.
+        """
+        knee = self._memory.knee[0]
+        if knee["has_angle"] == 0.0:
+            return
+        standing = angle_of_verticals(_plain(up), self._memory.axes, self._memory.across)
+        knee["zero"] = knee["angle"] + wrapped(standing - knee["angle"])
+        knee["is_zero_set"] = 1.0
+        self._reading[0, OUTPUTS.index("datum")] = DATUMS.index(Datum.SET)
+
+    @property
+    def has_angle(self) -> bool:
+        """Whether the reading is of the last sample: the axis has been found, however well."""
+        return bool(self._memory.knee[0]["has_angle"] > 0.0)
+
+    @property
+    def is_joint_known(self) -> bool:
+        """Whether the arms can be believed: enough of the knee's motion was seen, and both sensors agree on it."""
+        knee, parameters = self._memory.knee[0], self.parameters
+        has_moved = knee["joint_moving_s"] >= parameters.joint_motion_s
+        return bool(has_moved and knee["joint_coherence"] >= parameters.joint_coherence)
+
     @property
     def axes(self) -> NDArray[np.float64]:
         """Flexion axis in the frame of each sensor, (2, 3); zeros before any motion."""
@@ -232,6 +258,21 @@ class KneeAxis:
     def up(self) -> NDArray[np.float64]:
         """The vertical in the frame of each sensor, (2, 3), at the last sample."""
         return self._bench.R[:, 1, :].copy()
+
+    @property
+    def standing(self) -> NDArray[np.float64]:
+        """The vertical in the frame of each sensor at the tallest rest, (2, 3); zeros without one."""
+        return self._memory.standing.copy()
+
+    @property
+    def gyro_bias(self) -> NDArray[np.float64]:
+        """Of each sensor, (2, 3) rad/s."""
+        return np.array(self._memory.levels["bias"])
+
+    @property
+    def R_thigh_from_shank(self) -> NDArray[np.float64]:
+        """Relative orientation of the sensors at the last sample, (3, 3); zeros before the headings are tied."""
+        return self._memory.relative.copy()
 
     def snapshot(self) -> State:
         """Everything that changes, as JSON values."""

@@ -170,6 +170,34 @@ def test_a_declared_zero_stays():
     assert estimator.reading().datum is Datum.SET
 
 
+def test_a_standing_of_long_ago_can_be_declared_the_zero():
+    """Its verticals are told after the motion, here those of a knee that was bent by 0.2 rad."""
+    leg = record(walking(), 24.0, RATE_HZ, Sensors(MOUNTINGS[1]))
+    estimator = KneeAxis(KneeAxisParameters(sample_delay_s=0.0))
+    estimator.run(leg.rate[:2000], leg.force[:2000], 0.01)
+    assert estimator.has_angle
+    assert estimator.is_joint_known
+    up = np.array([[0.0, 1.0, 0.0], [np.sin(0.2), np.cos(0.2), 0.0]])
+    estimator.declare_standing(np.einsum("sij,sj->si", MOUNTINGS[1], up))
+    assert estimator.reading().datum is Datum.SET
+    rest = estimator.run(leg.rate[2000:], leg.force[2000:], 0.01)
+    assert np.degrees(np.abs(rest[:, FLEXION] + 0.2 - leg.flexion[2000:]).max()) < 2.0
+    # The relative orientation turns one vertical of standing by the flexion, about the axis, into the other.
+    thigh, shank = MOUNTINGS[1] @ np.array([0.0, 1.0, 0.0])
+    turned = Rotation.from_rotvec((rest[-1, FLEXION] + 0.2) * estimator.axes[0]).apply(thigh)
+    assert turned @ estimator.R_thigh_from_shank @ shank > np.cos(np.radians(3.0))
+
+
+def test_what_was_not_seen_is_not_told():
+    estimator = KneeAxis()
+    estimator.declare_standing(np.eye(3)[:2])
+    assert (estimator.has_angle, estimator.is_joint_known) == (False, False)
+    assert estimator.reading().datum is Datum.START
+    assert not estimator.standing.any()
+    assert not estimator.gyro_bias.any()
+    assert not estimator.R_thigh_from_shank.any()
+
+
 def test_the_axis_is_not_believed_before_it_was_seen():
     leg = record(walking(start_s=6.0), 20.0, RATE_HZ)
     out, _ = run(leg)
