@@ -177,7 +177,7 @@ def test_a_standing_of_long_ago_can_be_declared_the_zero():
     estimator.run(leg.rate[:2000], leg.force[:2000], 0.01)
     assert estimator.has_angle
     assert estimator.is_joint_known
-    up = np.array([[0.0, 1.0, 0.0], [np.sin(0.2), np.cos(0.2), 0.0]])
+    up = np.array([[0.0, 1.0, 0.0], [-np.sin(0.2), np.cos(0.2), 0.0]])
     estimator.declare_standing(np.einsum("sij,sj->si", MOUNTINGS[1], up))
     assert estimator.reading().datum is Datum.SET
     rest = estimator.run(leg.rate[2000:], leg.force[2000:], 0.01)
