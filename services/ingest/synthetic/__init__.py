@@ -2,7 +2,11 @@
 
 from services.ingest.synthetic.files import write_recording
 from services.ingest.synthetic.march import SyntheticMarch
-from services.ingest.synthetic.parameters import MarchParameters, WalkParameters
+from services.ingest.synthetic.parameters import MarchParameters, TugParameters, WalkParameters
+from services.ingest.synthetic.tug import SyntheticTug
 from services.ingest.synthetic.walk import SyntheticWalk
 
-__all__ = ["MarchParameters", "SyntheticMarch", "SyntheticWalk", "WalkParameters", "write_recording"]
+__all__ = [
+    "MarchParameters", "SyntheticMarch", "SyntheticTug", "SyntheticWalk", "TugParameters", "WalkParameters",
+    "write_recording",
+]  # fmt: skip

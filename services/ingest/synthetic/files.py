@@ -57,6 +57,7 @@ def _manifest(description: SessionDescription, options: str) -> str:
         f'title = "{description.title}"',
         f'protocol = "{description.protocol}"',
         f'task = "{description.task}"',
+        *([] if description.walkway_m is None else [f"walkway_m = {description.walkway_m}"]),
         f'walk_path = "{description.walk_path}"',
         f"rate_hz = {description.hubs[0].sensors[0].rate_hz}",
         "",

@@ -5,6 +5,7 @@ its height is minus theirs; so the loaded foot neither slides nor sinks. In doub
 from one foot to the other.
 """
 
+from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import NamedTuple
 
@@ -28,11 +29,15 @@ _LATERAL = {Side.RIGHT: 1.0, Side.LEFT: -1.0}
 
 
 class Strides(NamedTuple):
-    """Where the walker is: phase in strides of the right leg, amplitude 0 standing .. 1 as drawn, heading rad."""
+    """Where the walker is: phase in strides of the right leg, amplitude 0 standing .. 1 as drawn, heading rad.
+
+    `posture` adds to joint angles, rad by degree of freedom: how far the body is from upright, beside its striding.
+    """
 
     phase: Jet
     amplitude: Jet
     heading: Jet
+    posture: Mapping[str, Jet] = {}
 
 
 @dataclass(frozen=True)
@@ -76,7 +81,7 @@ class Gait:
                 amplitude = amplitude.scaled(self._vigour(Side(side)))
             found[dof.name] = phase.through(curves[name if paired else dof.name]) * amplitude
         found["pelvis_rotation"] = found["pelvis_rotation"] + strides.heading
-        return found
+        return found | {name: found[name] + away for name, away in strides.posture.items()}
 
     def body(self, strides: Strides, time_s: Array | None = None) -> WalkingBody:
         """The moving body. Without times the pelvis keeps its horizontal position at zero (its velocity is right)."""

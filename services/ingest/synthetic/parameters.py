@@ -93,6 +93,31 @@ class MarchParameters(SessionParameters):
     lift_jitter: float = _dial(0.05, 0.0, 0.2, "standard deviation of the lift from cycle to cycle, relative")
 
 
+@dataclass(frozen=True)
+class TugParameters(SessionParameters):
+    """The timed up and go: rise from a chair, walk out, turn, walk back, turn and sit down."""
+
+    motion: ClassVar[str] = "tug"
+
+    duration: float = _dial(0.0, 0.0, 8 * 3600.0, "s, standing included; 0: as long as all attempts take")
+    speed: float = _dial(1.1, 0.3, 1.6, "m/s, mean over a stride on the straight")
+    asymmetry: float = _dial(0.0, 0.0, 0.5, "share by which the left leg swings less; its steps also come off beat")
+    walkway: float = _dial(3.0, 1.5, 20.0, "m from the chair to the turning point, to within a step")
+    attempts: int = _dial(1, 0, 20, "times that the whole test is done")
+    pause: float = _dial(5.0, 1.0, 600.0, "s of sitting before each attempt and after the last")
+    seated_start: int = _dial(0, 0, 1, "1 begins sitting; 0 stands first, then sits down")
+    stroll: int = _dial(0, 0, 50, "strides of walking after the standing, before sitting down for the first time")
+    seat_height: float = _dial(0.46, 0.3, 0.6, "m, floor to seat; the legs' length decides whether it is low or high")
+    rise_time: float = _dial(1.6, 0.8, 8.0, "s from the trunk's first motion to upright")
+    sit_time: float = _dial(1.8, 0.8, 8.0, "s from upright to the seat")
+    turn_time: float = _dial(2.0, 1.0, 12.0, "s that each turn takes")
+    turn_steps: int = _dial(2, 1, 6, "parts in which a turn is made; 1 turns at an even sweep")
+    hesitation: float = _dial(0.0, 0.0, 20.0, "s of standing before the turn at the marker")
+    fidget: float = _dial(0.03, 0.0, 0.15, "rad, standard deviation of the trunk's restlessness while seated")
+    false_starts: int = _dial(0, 0, 5, "times that the person rises and sits down again before the first attempt")
+    aborted: int = _dial(0, 0, 5, "attempts before the first whole one that end on a chair brought after a few steps")
+
+
 def _number(dial: "dataclasses.Field[Any]", text: str) -> float:
     low, high = dial.metadata["low"], dial.metadata["high"]
     try:

@@ -2,12 +2,13 @@
 
 import math
 from abc import ABC, abstractmethod
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 from dataclasses import dataclass
 from functools import cached_property
 
 import numpy as np
 from scipy.interpolate import PchipInterpolator
+from scipy.optimize import brentq
 
 from schemas.session import Anthropometry, HubDescription, ReferenceChannel, SessionDescription
 from schemas.vocabulary import LOWER_BODY, Side, Task
@@ -50,6 +51,9 @@ class SyntheticSession(ABC):
     title: str
     protocol: str
     task = Task.WALK
+    walkway_m: float | None = None
+    own_channels: tuple[str, ...] = ()
+    """Truth, dimensionless, that only this motion has."""
 
     def __init__(self, parameters: SessionParameters, timeline: Timeline, gait: Gait) -> None:
         self.parameters = parameters
@@ -71,6 +75,18 @@ class SyntheticSession(ABC):
         """m per stride over amplitude."""
         return PchipInterpolator(AMPLITUDES, self.gait.stride_length(AMPLITUDES))
 
+    def amplitude_at(self, speed: float) -> float:
+        """Amplitude at which stride length times stride frequency is a speed, m/s; the largest for a higher one."""
+        wanted = speed / self.timeline.frequency_hz
+        longest = float(self.stride_length(AMPLITUDES[-1]))
+        if wanted >= longest:
+            return float(AMPLITUDES[-1])
+        return float(brentq(lambda amplitude: float(self.stride_length(amplitude)) - wanted, 0.0, AMPLITUDES[-1]))
+
+    def own_truth(self, time_s: Array) -> Array:
+        """The channels of `own_channels` at n instants, one column each."""
+        return np.zeros((len(time_s), len(self.own_channels)))
+
     def description(self, session: str = "synthetic", started_unix_ns: int = 0) -> SessionDescription:
         """The session as it would be served live."""
         parameters = self.parameters
@@ -81,7 +97,7 @@ class SyntheticSession(ABC):
             origin="synthetic",
             protocol=self.protocol,
             task=self.task,
-            walkway_m=None,
+            walkway_m=self.walkway_m,
             estimator="knee_axis" if parameters.worn in (LEFT_LEG, RIGHT_LEG) else "rhythmic_ekf",
             walk_path="turning",
             hubs=[HubDescription(name=HUB, sensors=[mount.description for mount in self.mounts])],
@@ -94,7 +110,7 @@ class SyntheticSession(ABC):
                 source="measured",
             ),
             standing=[],
-            reference=reference_channels() if parameters.truth else [],
+            reference=reference_channels(self.own_channels) if parameters.truth else [],
             duration_s=(self.sample_count - 1) / parameters.rate,
             known_rhythms=[],
         )
@@ -119,7 +135,7 @@ class SyntheticSession(ABC):
             strides = self.strides(time_s)
             body = self.gait.body(strides, time_s)
             sensors = [self._track(mount, index, body, strides, captured_ns) for mount in self.mounts]
-            yield Block(sensors, ReferenceTrack(captured_ns, self._truth(body, strides, start)[:-1]))
+            yield Block(sensors, ReferenceTrack(captured_ns, self._truth(body, strides, start, time_s)[:-1]))
             start = start + body.pelvis.position[-1] * [1, 0, 1]
 
     def _track(
@@ -131,20 +147,21 @@ class SyntheticSession(ABC):
         drifted = (captured_ns / 1e9)[:, None] * mount.gyro_drift
         return ImuTrack(captured_ns, rate[:-1] + drifted, force[:-1])
 
-    def _truth(self, body: WalkingBody, strides: Strides, start: Array) -> Array:
+    def _truth(self, body: WalkingBody, strides: Strides, start: Array, time_s: Array) -> Array:
         walking = strides.phase.rate
         speed = np.asarray(self.stride_length(strides.amplitude.value)) * walking
         columns = [body.angles[dof.name].value for dof in LOWER_BODY]
         columns += [body.contact[side] for side in Side]
         columns += [speed, 2 * math.pi * strides.phase.value, 2 * math.pi * walking]
         points: list[PointMotion] = [body.pelvis, *(body.ankle(side) for side in Side)]
-        return np.column_stack([*columns, *(point.position + start for point in points)])
+        return np.column_stack([*columns, *(point.position + start for point in points), self.own_truth(time_s)])
 
 
-def reference_channels() -> list[ReferenceChannel]:
-    """The truth that travels beside the samples."""
+def reference_channels(own: Iterable[str] = ()) -> list[ReferenceChannel]:
+    """The truth that travels beside the samples; `own` names what only one motion has."""
     channels = [(dof.name, "rad") for dof in LOWER_BODY]
     channels += [(f"foot_contact_{side}", "1") for side in Side]
     channels += [("walking_speed", "m/s"), ("stride_phase", "rad"), ("stride_frequency", "rad/s")]
     channels += [(f"{point}_{axis}", "m") for point in ("pelvis", "ankle_left", "ankle_right") for axis in "xyz"]
+    channels += [(name, "1") for name in own]
     return [ReferenceChannel(name=name, unit=unit) for name, unit in channels]

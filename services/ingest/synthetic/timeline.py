@@ -107,12 +107,12 @@ def plan_bouts(parameters: SessionParameters, tempo: Tempo) -> tuple[Bout, ...]:
         strides = math.floor(float(tempo.walked(start_s, np.array([wanted])).value[0]))
         if strides < 3:
             return tuple(bouts)
-        end_s = _time_of(tempo, start_s, strides, wanted)
+        end_s = time_of(tempo, start_s, strides, wanted)
         bouts.append(Bout(start_s, end_s, phase))
         start_s, phase = end_s + parameters.pause, phase + strides
 
 
-def _time_of(tempo: Tempo, start_s: float, strides: int, latest_s: float) -> float:
+def time_of(tempo: Tempo, start_s: float, strides: int, latest_s: float) -> float:
     """When so many strides are done, by bisection: frequency is positive, so strides grow with time."""
     low, high = start_s, latest_s
     for _ in range(60):
