@@ -27,8 +27,8 @@ Source = Annotated[
     typer.Argument(
         metavar="PATH",
         help="A folder with a recording.toml, an .mcap file of Ambula, the name of a shipped manifest"
-        " (neura_s02_walk), synthetic:walk?speed=1.1&seed=3, synthetic:march?metronome=70&seed=3 or"
-        " synthetic:tug?seed=3",
+        " (neura_s02_walk), synthetic:walk?speed=1.1&seed=3, synthetic:march?metronome=70&seed=3,"
+        " synthetic:tug?seed=3 or synthetic:knee?exercise=1&seed=3",
     ),
 ]
 Estimator = Annotated[
@@ -183,14 +183,15 @@ def synth(
     walk: Annotated[str, typer.Option(help="as in a source name, e.g. speed=1.3&asymmetry=0.2&seed=7")] = "",
     march: Annotated[str | None, typer.Option(help="march on the spot instead, e.g. metronome=70&seed=7")] = None,
     tug: Annotated[str | None, typer.Option(help="a timed up and go instead, e.g. walkway=3&seed=7")] = None,
+    knee: Annotated[str | None, typer.Option(help="an exercise of a knee instead, e.g. exercise=1&seed=7")] = None,
     straight: Straight = None,
 ) -> None:
-    """Write a synthetic walk, march or timed up and go with its truth as a recording folder."""
+    """Write a synthetic walk, march, timed up and go or knee exercise with its truth as a recording folder."""
     from services.ingest.errors import SourceError
     from services.ingest.synthetic import write_recording
 
     with told(SourceError, OSError):
-        asked = {"march": march, "tug": tug}
+        asked = {"march": march, "tug": tug, "knee": knee}
         motion, options = next(((name, said) for name, said in asked.items() if said is not None), ("walk", walk))
         write_recording(folder, options, _walk_path(straight) or "turning", motion=motion)
     out.print(f"written: {folder}/recording.toml and its CSV files; try: ambula run {folder} --out out")

@@ -43,7 +43,7 @@ DEFAULT_RANGE: Mapping[Exercise, float] = {
     Exercise.SIT_TO_STAND: 1.45,
 }
 """rad."""
-LEAST_FLEXION: Mapping[Exercise, float] = {exercise: 0.1 for exercise in Exercise} | {Exercise.CYCLING: 0.5}
+LEAST_FLEXION: Mapping[Exercise, float] = dict.fromkeys(Exercise, 0.1) | {Exercise.CYCLING: 0.5}
 """rad at the extended end; a saddle keeps the knee bent."""
 
 SEATED_TILT, SADDLE_TILT = -0.2, 0.5

@@ -3,8 +3,9 @@
 from collections.abc import Callable
 
 from services.ingest.errors import UnknownSource
+from services.ingest.synthetic.knee_flexion import SyntheticKnee
 from services.ingest.synthetic.march import SyntheticMarch
-from services.ingest.synthetic.parameters import MarchParameters, TugParameters, WalkParameters
+from services.ingest.synthetic.parameters import KneeParameters, MarchParameters, TugParameters, WalkParameters
 from services.ingest.synthetic.session import SyntheticSession
 from services.ingest.synthetic.tug import SyntheticTug
 from services.ingest.synthetic.walk import SyntheticWalk
@@ -12,6 +13,7 @@ from services.ingest.synthetic.walk import SyntheticWalk
 MOTIONS: dict[str, Callable[[str], SyntheticSession]] = {
     "walk": lambda options: SyntheticWalk(WalkParameters.parse(options)),
     "march": lambda options: SyntheticMarch(MarchParameters.parse(options)),
+    "knee": lambda options: SyntheticKnee(KneeParameters.parse(options)),
     "tug": lambda options: SyntheticTug(TugParameters.parse(options)),
 }
 

@@ -118,6 +118,33 @@ class TugParameters(SessionParameters):
     aborted: int = _dial(0, 0, 5, "attempts before the first whole one that end on a chair brought after a few steps")
 
 
+@dataclass(frozen=True)
+class KneeParameters(SessionParameters):
+    """Repetitions of an exercise of one knee; nobody walks."""
+
+    motion: ClassVar[str] = "knee"
+
+    duration: float = _dial(90.0, 10.0, 8 * 3600.0, "s, standing and rests included")
+    standing: float = _dial(0.0, 0.0, 600.0, "s of quiet standing at the start; 0 begins in the exercise's position")
+    worn: int = _dial(2, 0, 3, "as in every session; the right knee exercises unless the left leg alone wears")
+    exercise: int = _dial(1, 1, 5, "1 seated extension, 2 heel slide, 3 squat, 4 cycling, 5 sit to stand")
+    tempo: float = _dial(15.0, 2.0, 120.0, "repetitions per minute within a set, at the start")
+    range: float = _dial(0.0, 0.0, 2.2, "rad of knee flexion from end to end; 0 is what is usual for the exercise")
+    deficit: float = _dial(0.0, 0.0, 1.0, "rad of flexion that remains in the most extended knee; 0 is what is usual")
+    hold: float = _dial(0.0, 0.0, 15.0, "s that the far side is held")
+    breath: float = _dial(0.4, 0.0, 20.0, "s of rest after each repetition")
+    set_of: int = _dial(0, 0, 1000, "repetitions in a set; 0 makes one set of all")
+    rest: float = _dial(5.0, 1.0, 600.0, "s of rest before the first repetition and between sets")
+    jitter: float = _dial(
+        0.05, 0.0, 0.2, "standard deviation of time and range from repetition to repetition, relative"
+    )
+    fatigue: float = _dial(0.0, 0.0, 0.8, "share of the range that is lost by the end")
+    slowing: float = _dial(0.0, 0.0, 0.8, "share of the tempo that is lost by the end")
+    hesitations: float = _dial(0.0, 0.0, 1.0, "share of repetitions that stop half-way out")
+    partials: float = _dial(0.0, 0.0, 0.5, "share of repetitions that go less than half as far")
+    tremor: float = _dial(0.0, 0.0, 0.1, "rad, amplitude of a tremor of 5 Hz of the knee")
+
+
 def _number(dial: "dataclasses.Field[Any]", text: str) -> float:
     low, high = dial.metadata["low"], dial.metadata["high"]
     try:

@@ -87,6 +87,10 @@ class SyntheticSession(ABC):
         """The channels of `own_channels` at n instants, one column each."""
         return np.zeros((len(time_s), len(self.own_channels)))
 
+    def soft_tissue(self, strides: Strides) -> tuple[Jet, Jet]:
+        """What it follows, in cycles, and how much: the strides."""
+        return strides.phase, strides.amplitude
+
     def description(self, session: str = "synthetic", started_unix_ns: int = 0) -> SessionDescription:
         """The session as it would be served live."""
         parameters = self.parameters
@@ -141,7 +145,7 @@ class SyntheticSession(ABC):
     def _track(
         self, mount: Mount, block: int, body: WalkingBody, strides: Strides, captured_ns: "np.typing.NDArray[np.int64]"
     ) -> ImuTrack:
-        truth = measure(mount, body.segments[mount.description.segment], strides.phase, strides.amplitude)
+        truth = measure(mount, body.segments[mount.description.segment], *self.soft_tissue(strides))
         rng = np.random.default_rng([self.parameters.seed, 3, mount.number, block])
         rate, force = spoiled(mount, truth, self.parameters, rng)
         drifted = (captured_ns / 1e9)[:, None] * mount.gyro_drift
