@@ -18,8 +18,7 @@ def compiled(function: Function) -> Function:
     """Compile on first use and keep the machine code on disk until any file of this folder changes.
 
     Not a number stays not a number: that is how unusable samples are told. Of fastmath only what keeps that.
-    Callers take it in: a call would copy the headers of all the memory's arrays.
     """
-    dispatcher = numba.njit(forceinline=True, cache=True, error_model="numpy", nogil=True, fastmath=_FASTMATH)(function)
+    dispatcher = numba.njit(cache=True, error_model="numpy", nogil=True, fastmath=_FASTMATH)(function)
     dispatcher._cache._cache_file._source_stamp = _STAMP
     return dispatcher  # type: ignore[no-any-return]

@@ -1,15 +1,10 @@
-"""The angle about the axis, its sign, its zero and its uncertainty."""
+"""The angle about the axis, its zero and its uncertainty."""
 
 from math import atan2, sin, sqrt
 
 from services.biomech.two_sensor_knee.compiled import compiled
 from services.biomech.two_sensor_knee.memory import SHANK, THIGH, Bench, FloatArray, Memory, Record
-from services.biomech.two_sensor_knee.turns import low_pass_gain, wrapped
-
-POSTURE_MEMORY_S = 30.0
-SIGN_WEIGHT_S = 2.0
-SIGN_SPREAD = 0.15
-"""rad. Deviation of the angle below which nothing is said about its sign."""
+from services.biomech.two_sensor_knee.turns import wrapped
 
 
 @compiled
@@ -33,21 +28,10 @@ def twist(relative: FloatArray, axes: FloatArray, across: FloatArray) -> float:
 
 
 @compiled
-def follow_angle(memory: Memory, bench: Bench, is_moving: bool, dt_s: float) -> None:
-    """Unwrap the angle, and remember the postures it moves through."""
-    knee = memory.knee[0]
+def follow_angle(memory: Memory, bench: Bench) -> None:
+    """Unwrap the angle."""
+    knee = memory.knee
     knee.angle += wrapped(twist(bench.relative, memory.axes, memory.across) - knee.angle)
-    if is_moving:
-        follow_posture(memory, bench, dt_s)
-
-
-@compiled
-def settle(memory: Memory, parameters: Record) -> None:
-    """Say where the zero is and which way the knee bends."""
-    if memory.posture[0].weight > 0.0:
-        settle_zero(memory, parameters)
-        settle_sign(memory, parameters)
-    memory.knee[0].sensor_turn = turn_from_sensor_axes(memory.axes, memory.across)
 
 
 @compiled
@@ -56,7 +40,7 @@ def settle_zero(memory: Memory, parameters: Record) -> None:
 
     Sitting on a bicycle is upright enough, but there the knee moves to both sides.
     """
-    knee, posture = memory.knee[0], memory.posture[0]
+    knee, posture = memory.knee, memory.posture
     if not is_upright(memory, parameters):
         return
     angle = posture.angle / posture.weight
@@ -77,7 +61,7 @@ def take_standing(memory: Memory, bench: Bench) -> None:
 
     Sitting still comes before standing still, so a later rest that is taller takes the place of the one before.
     """
-    knee, parameters, levels = memory.knee[0], bench.parameters[0], memory.levels
+    knee, parameters, levels = memory.knee, bench.parameters, memory.levels
     if levels[THIGH].rest_s < parameters.calm_s or levels[SHANK].rest_s < parameters.calm_s:
         return
     up_thigh, up_shank = bench.R[THIGH, 1], bench.R[SHANK, 1]
@@ -92,7 +76,7 @@ def take_standing(memory: Memory, bench: Bench) -> None:
 @compiled
 def is_upright(memory: Memory, parameters: Record) -> bool:
     """Whether at the tallest rest the knee was below the thigh's sensor and above the shank's."""
-    if memory.knee[0].has_standing == 0.0:
+    if memory.knee.has_standing == 0.0:
         return False
     thigh = upright_share(memory, THIGH, memory.standing[THIGH])
     shank = upright_share(memory, SHANK, memory.standing[SHANK])
@@ -143,66 +127,9 @@ def sensor_height(memory: Memory, up_thigh: FloatArray, up_shank: FloatArray) ->
 
 
 @compiled
-def follow_posture(memory: Memory, bench: Bench, dt_s: float) -> None:
-    """Running moments of angle and height, forgotten over half a minute of motion."""
-    posture, angle = memory.posture[0], memory.knee[0].angle
-    up_thigh, up_shank = bench.R[THIGH, 1], bench.R[SHANK, 1]
-    height, upright = 0.0, 0.0
-    for i in range(3):
-        upright -= up_thigh[i] * memory.arms[THIGH, i]
-        height += up_shank[i] * memory.arms[SHANK, i]
-    height += upright
-    keep = 1.0 - low_pass_gain(POSTURE_MEMORY_S, dt_s)
-    posture.weight = keep * posture.weight + dt_s
-    posture.angle = keep * posture.angle + dt_s * angle
-    posture.height = keep * posture.height + dt_s * height
-    posture.upright = keep * posture.upright + dt_s * upright
-    posture.angle_height = keep * posture.angle_height + dt_s * angle * height
-    posture.angle2 = keep * posture.angle2 + dt_s * angle * angle
-    posture.height2 = keep * posture.height2 + dt_s * height * height
-
-
-@compiled
-def settle_sign(memory: Memory, parameters: Record) -> None:
-    """Turn both axes round when the motion seen so far speaks against them.
-
-    Two witnesses, each within +-1: over an upright thigh flexion brings the sensors' heights together, so the angle
-    falls with the height; and from standing a knee can only bend, so the moving knee's mean lies on the positive side
-    of a standing zero. A seated leg lifts the shank by extending: its height says nothing.
-    """
-    posture, knee = memory.posture[0], memory.knee[0]
-    if parameters.sign_evidence == 0.0:
-        knee.is_sign_known = 1.0
-        return
-    if posture.weight < SIGN_WEIGHT_S:
-        return
-    angle, height = posture.angle / posture.weight, posture.height / posture.weight
-    angle_variance = posture.angle2 / posture.weight - angle * angle
-    height_variance = posture.height2 / posture.weight - height * height
-    if angle_variance < SIGN_SPREAD**2 or height_variance < 1e-6:
-        return
-    evidence = 0.0
-    arm = arm_length(memory, THIGH)
-    if arm >= parameters.shortest_arm and posture.upright >= parameters.upright_share * arm * posture.weight:
-        covariance = posture.angle_height / posture.weight - angle * height
-        evidence = -covariance / sqrt(angle_variance * height_variance)
-    if knee.is_standing > 0.0:
-        evidence += min(max((angle - knee.standing_angle) / sqrt(angle_variance), -1.0), 1.0)
-    if evidence < -parameters.sign_evidence:
-        memory.axes[:] *= -1.0
-        knee.angle *= -1.0
-        knee.zero *= -1.0
-        knee.standing_angle *= -1.0
-        posture.angle *= -1.0
-        posture.angle_height *= -1.0
-    if abs(evidence) > parameters.sign_evidence:
-        knee.is_sign_known = 1.0
-
-
-@compiled
 def angle_deviation(memory: Memory, bench: Bench, axis_std: float) -> float:
     """Standard deviation of the flexion, rad: inclination of both sensors, axis, and heading at an upright axis."""
-    knee, parameters, R, axes = memory.knee[0], bench.parameters[0], bench.R, memory.axes
+    knee, parameters, R, axes = memory.knee, bench.parameters, bench.R, memory.axes
     variance = 0.0
     for s in range(2):
         variance += parameters.level_std**2

@@ -17,7 +17,7 @@ UNKNOWN_STD = 1.5
 @compiled
 def follow_axis(memory: Memory, bench: Bench, dt_s: float) -> bool:
     """Add the sample's relative rate to both scatters; False when it is too slow to tell."""
-    knee, parameters, relative, rate = memory.knee[0], bench.parameters[0], bench.midway, bench.rate
+    knee, parameters, relative, rate = memory.knee, bench.parameters, bench.midway, bench.rate
     in_thigh = (
         relative[0, 0] * rate[1, 0] + relative[0, 1] * rate[1, 1] + relative[0, 2] * rate[1, 2] - rate[0, 0],
         relative[1, 0] * rate[1, 0] + relative[1, 1] * rate[1, 1] + relative[1, 2] * rate[1, 2] - rate[0, 1],
@@ -46,8 +46,8 @@ def improve_axes(memory: Memory, bench: Bench) -> None:
     for s in range(2):
         iterate(memory.scatter[s], memory.axes[s])
         straighten(memory.across[s], memory.axes[s])
-    memory.knee[0].axis_std = axis_deviation(memory, bench)
-    if memory.knee[0].has_angle == 0.0:
+    memory.knee.axis_std = axis_deviation(memory, bench)
+    if memory.knee.has_angle == 0.0:
         pair_axes(memory, bench)
 
 
@@ -71,7 +71,7 @@ def begin_axes(
     for i in range(3):
         memory.axes[THIGH, i] = in_thigh[i] / length
         memory.axes[SHANK, i] = in_shank[i] / length
-    memory.knee[0].axis_std = UNKNOWN_STD
+    memory.knee.axis_std = UNKNOWN_STD
 
 
 @compiled
@@ -92,7 +92,7 @@ def begin_angle(memory: Memory, bench: Bench) -> None:
         for i in range(3):
             across[SHANK, k] += bench.relative[i, k] * across[THIGH, i]
     straighten(across[SHANK], axes[SHANK])
-    memory.knee[0].has_angle = 1.0
+    memory.knee.has_angle = 1.0
 
 
 @compiled
@@ -131,7 +131,7 @@ def axis_deviation(memory: Memory, bench: Bench) -> float:
     Off-axis motion of share q = minor / major moves the axis by sqrt(q correlation time / moving time) as far as it
     is random, and by a share of sqrt(q) as far as it repeats with the motion.
     """
-    knee, parameters = memory.knee[0], bench.parameters[0]
+    knee, parameters = memory.knee, bench.parameters
     if knee.moving_s <= 0.0:
         return UNKNOWN_STD
     worst = 0.0

@@ -22,7 +22,7 @@ IDLE, ON_GRID, SOLVED = 0, 1, 2
 @compiled
 def follow_joint(memory: Memory, bench: Bench, force: FloatArray, dt_s: float) -> int:
     """Take one sample (force (2, 3) m/s^2; rate and R in the bench); IDLE, ON_GRID or SOLVED."""
-    knee, parameters = memory.knee[0], bench.parameters[0]
+    knee, parameters = memory.knee, bench.parameters
     gain = low_pass_gain(0.5 / (pi * parameters.joint_cutoff_hz), dt_s)
     for s in range(2):
         low_pass_columns(
@@ -93,7 +93,7 @@ def add_products(memory: Memory, forgetting: float, dt_s: float) -> None:
             memory.horizontal_imaginary[i, j] = forgetting * memory.horizontal_imaginary[i, j] + dt_s * (
                 x_i * z_j - z_i * x_j
             )
-    knee = memory.knee[0]
+    knee = memory.knee
     power = joint[0, 2, 0] ** 2 + joint[0, 0, 0] ** 2
     knee.joint_power += low_pass_gain(1.0, dt_s) * (power - knee.joint_power)
 
@@ -109,7 +109,7 @@ def largest_square(rate: FloatArray) -> float:
 @compiled
 def solve_joint(memory: Memory, bench: Bench) -> bool:
     """Arms, heading and coherence from the running products; False where the equations have no solution."""
-    knee = memory.knee[0]
+    knee = memory.knee
     if not solve_arms(memory, bench, 0.0, 0.0):
         return False
     heading_and_coherence(memory)
@@ -126,7 +126,7 @@ def solve_arms(memory: Memory, bench: Bench, horizontal: float, heading: float) 
 
     Unknowns p = (r1, -r2); columns 1-3 and 5-7 against column 0 minus column 4.
     """
-    parameters = bench.parameters[0]
+    parameters = bench.parameters
     c, s = horizontal * cos(heading), horizontal * sin(heading)
     A = bench.normal
     ridge = parameters.joint_memory_s * (parameters.joint_noise / parameters.arm_std) ** 2
@@ -185,7 +185,7 @@ def solve_in_place(A: FloatArray) -> bool:
 @compiled
 def heading_and_coherence(memory: Memory) -> None:
     """d = arg sum h1 conj(h2), |sum| / sqrt(sum |h1|^2 sum |h2|^2), of the horizontal acceleration of the knee."""
-    knee, arms = memory.knee[0], memory.arms
+    knee, arms = memory.knee, memory.arms
     real, imaginary, first, second = 0.0, 0.0, 0.0, 0.0
     for i in range(4):
         for j in range(4):

@@ -14,9 +14,12 @@ from services.biomech.two_sensor_knee.turns import fill_matrix, low_pass_gain, p
 
 @compiled
 def follow_level(
-    level: Record, rate: FloatArray, force: FloatArray, dt_s: float, parameters: Record, R: FloatArray
+    level: Record, rate: FloatArray, force: FloatArray, dt_s: float, parameters: Record, R: FloatArray, is_new: bool
 ) -> None:
-    """Take one sample: rate (3,) rad/s measured, force (3,) m/s^2, dt_s after the one before; R (3, 3) is written."""
+    """Take one sample: rate (3,) rad/s measured, force (3,) m/s^2, dt_s after the one before; R (3, 3) is written.
+
+    A sample that is not new, because it is taken a second time, says nothing about the bias.
+    """
     level.elapsed_s += dt_s
     is_at_rest = follow_rest(level, rate, force, dt_s, parameters)
     quat = (level.quat[0], level.quat[1], level.quat[2], level.quat[3])
@@ -29,7 +32,8 @@ def follow_level(
     for i in range(4):
         level.quat[i] = quat[i]
     fill_matrix(quat, R)
-    follow_bias(level, R, turn_x / dt_s, turn_z / dt_s, is_at_rest, dt_s, parameters)
+    if is_new:
+        follow_bias(level, R, turn_x / dt_s, turn_z / dt_s, is_at_rest, dt_s, parameters)
 
 
 @compiled

@@ -5,7 +5,7 @@ turn by `a` about the up axis multiplies by exp(i a).
 """
 
 from dataclasses import astuple, fields
-from typing import Any, NamedTuple
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -15,7 +15,10 @@ from services.flow.node import State, pack_array, unpack_array
 
 FloatArray = NDArray[np.float64]
 Record = Any
-"""One element of a structured array. Compiled code reads and writes its fields as attributes."""
+"""One element of a structured array. Compiled code reads and writes its fields as attributes, and passes it on as one
+address: arrays by themselves would be taken apart at each call."""
+Memory = Bench = Record
+"""Of dtype MEMORY and BENCH."""
 
 THIGH, SHANK = 0, 1
 
@@ -47,6 +50,7 @@ KNEE = np.dtype(
         ("joint_power", np.float64),  # (m/s^2)^2
         ("joint_moving_s", np.float64),
         ("contradictions", np.float64),
+        ("is_half_turn_open", np.float64),  # the headings were tied by the rates: the shank may face the other way
         ("since_products_s", np.float64),
         ("since_solution_s", np.float64),
         ("moving_s", np.float64),  # of relative motion in the scatter
@@ -65,11 +69,15 @@ KNEE = np.dtype(
         ("is_sign_known", np.float64),
         ("unused_s", np.float64),  # time of samples that could not be used
         ("has_sample", np.float64),
+        ("known_s", np.float64),  # ahead, that were seen before: nothing is learned from them
     ]
 )
 
 POSTURE = np.dtype(
-    [(name, np.float64) for name in ("weight", "angle", "height", "upright", "angle_height", "angle2", "height2")]
+    [
+        (name, np.float64)
+        for name in ("weight", "angle", "height", "upright", "angle_height", "angle2", "angle3", "height2")
+    ]
 )
 """Running moments in motion: angle, height of the thigh's sensor over the shank's and, as `upright`, over the knee."""
 
@@ -81,84 +89,78 @@ OUTPUTS = (
 """Columns of a run: rad and rad/s; `datum` counts as `knee_axis.Datum`."""
 
 
-class Memory(NamedTuple):
-    """Everything that changes."""
+MEMORY = np.dtype(
+    [
+        ("levels", LEVEL, 2),
+        ("knee", KNEE),
+        ("posture", POSTURE),
+        ("rate_before", np.float64, (2, 3)),  # rad/s
+        ("joint_fast", np.float64, (2, 3, 4)),  # world: specific force, and the arm's effect, after the first low-pass
+        ("joint", np.float64, (2, 3, 4)),  # after the second
+        ("vertical", np.float64, (8, 8)),  # running products of the vertical row
+        ("horizontal_real", np.float64, (8, 8)),  # of the horizontal ones
+        ("horizontal_imaginary", np.float64, (8, 8)),
+        ("arms", np.float64, (2, 3)),  # m, sensor to knee, in the sensor
+        ("scatter", np.float64, (2, 3, 3)),  # rad^2/s of the relative rate
+        ("axes", np.float64, (2, 3)),  # flexion axis in each sensor
+        ("across", np.float64, (2, 3)),  # direction across the axis; both agree where the angle is 0
+        ("leftward", np.float64, (2, 3)),  # declared direction of the person's left in each sensor; 0: not declared
+        ("upward", np.float64, (2, 3)),  # declared direction up the segment; 0: not declared
+        ("standing", np.float64, (2, 3)),  # the vertical in each sensor at the tallest rest
+        ("relative", np.float64, (3, 3)),  # R_thigh_from_shank at the last sample
+        ("output", np.float64, len(OUTPUTS)),  # of the last sample
+    ]
+)
+"""Everything that changes."""
 
-    levels: NDArray[np.void]  # (2,) LEVEL
-    knee: NDArray[np.void]  # (1,) KNEE
-    posture: NDArray[np.void]  # (1,) POSTURE
-    rate_before: FloatArray  # (2, 3) rad/s
-    joint_fast: FloatArray  # (2, 3, 4) world: specific force, and the arm's effect, after the first low-pass
-    joint: FloatArray  # (2, 3, 4) after the second
-    vertical: FloatArray  # (8, 8) running products of the vertical row
-    horizontal_real: FloatArray  # (8, 8) of the horizontal ones
-    horizontal_imaginary: FloatArray  # (8, 8)
-    arms: FloatArray  # (2, 3) m, sensor to knee, in the sensor
-    scatter: FloatArray  # (2, 3, 3) rad^2/s of the relative rate
-    axes: FloatArray  # (2, 3) flexion axis in each sensor
-    across: FloatArray  # (2, 3) direction across the axis; both agree where the angle is 0
-    standing: FloatArray  # (2, 3) the vertical in each sensor at the tallest rest
-    relative: FloatArray  # (3, 3) R_thigh_from_shank at the last sample
+BENCH = np.dtype(
+    [
+        ("parameters", PARAMETERS),
+        ("rate", np.float64, (2, 3)),  # rad/s, bias removed
+        ("R", np.float64, (2, 3, 3)),  # R_world_from_sensor
+        ("relative", np.float64, (3, 3)),  # R_thigh_from_shank
+        ("midway", np.float64, (3, 3)),  # the same in the middle of the interval, which the rates are the mean of
+        ("normal", np.float64, (7, 7)),  # scratch of the joint centre
+    ]
+)
+"""What follows from the parameters, and scratch room. Nothing here outlives a step."""
 
 
-class Bench(NamedTuple):
-    """What follows from the parameters, and scratch room. Nothing here outlives a step."""
-
-    parameters: NDArray[np.void]  # (1,) PARAMETERS
-    rate: FloatArray  # (2, 3) rad/s, bias removed
-    R: FloatArray  # (2, 3, 3) R_world_from_sensor
-    relative: FloatArray  # (3, 3) R_thigh_from_shank
-    midway: FloatArray  # (3, 3) the same in the middle of the interval, which the rates are the mean of
-    normal: FloatArray  # (7, 7) scratch of the joint centre
-    output: FloatArray  # (len(OUTPUTS),)
-
-
-def allocate_memory(parameters: KneeAxisParameters) -> Memory:
-    """A memory that has seen nothing."""
-    levels = np.zeros(2, LEVEL)
+def allocate_memory(parameters: KneeAxisParameters) -> NDArray[np.void]:
+    """A memory (1,) MEMORY that has seen nothing."""
+    memory = np.zeros(1, MEMORY)
+    levels = memory["levels"][0]
     levels["quat"][:, 0] = 1.0
-    for sensor in range(2):
-        levels["bias_covariance"][sensor] = parameters.start_bias_std**2 * np.eye(3)
-    shapes: dict[str, tuple[int, ...]] = {
-        "rate_before": (2, 3), "joint_fast": (2, 3, 4), "joint": (2, 3, 4), "vertical": (8, 8),
-        "horizontal_real": (8, 8), "horizontal_imaginary": (8, 8), "arms": (2, 3), "scatter": (2, 3, 3),
-        "axes": (2, 3), "across": (2, 3), "standing": (2, 3),
-        "relative": (3, 3),
-    }  # fmt: skip
-    arrays = {name: np.zeros(shape) for name, shape in shapes.items()}
-    return Memory(levels=levels, knee=np.zeros(1, KNEE), posture=np.zeros(1, POSTURE), **arrays)
+    levels["bias_covariance"][:] = parameters.start_bias_std**2 * np.eye(3)
+    return memory
 
 
-def prepare_bench(parameters: KneeAxisParameters) -> Bench:
-    """Derive what the parameters fix."""
-    return Bench(
-        parameters=np.array([astuple(parameters)], PARAMETERS),
-        rate=np.zeros((2, 3)),
-        R=np.zeros((2, 3, 3)),
-        relative=np.zeros((3, 3)),
-        midway=np.zeros((3, 3)),
-        normal=np.zeros((7, 7)),
-        output=np.zeros(len(OUTPUTS)),
-    )
+def prepare_bench(parameters: KneeAxisParameters) -> NDArray[np.void]:
+    """Derive what the parameters fix, as (1,) BENCH."""
+    bench = np.zeros(1, BENCH)
+    bench["parameters"] = np.array([astuple(parameters)], PARAMETERS)
+    return bench
 
 
-def pack_memory(memory: Memory) -> State:
+def pack_memory(memory: NDArray[np.void]) -> State:
     """The memory as JSON values."""
-    return {
-        name: pack_array(array.view(np.float64) if array.dtype.names else array)
-        for name, array in memory._asdict().items()
-    }
+    return {name: pack_array(_plain(memory, name)) for name in MEMORY.names or ()}
 
 
-def unpack_memory(state: State, memory: Memory) -> None:
+def unpack_memory(state: State, memory: NDArray[np.void]) -> None:
     """Fill `memory` from what `pack_memory` gave.
 
     Raises:
         ValueError: the snapshot is of another kind of estimator.
     """
-    for name, array in memory._asdict().items():
-        saved = unpack_array(state[name])
-        target = array.view(np.float64) if array.dtype.names else array
+    for name in MEMORY.names or ():
+        saved, target = unpack_array(state[name]), _plain(memory, name)
         if saved.shape != target.shape:
             raise ValueError(f"knee snapshot: {name} has shape {saved.shape}, this estimator needs {target.shape}")
         target[...] = saved
+
+
+def _plain(memory: NDArray[np.void], name: str) -> FloatArray:
+    """One field of the memory as a view of numbers."""
+    field = memory[0][name]
+    return np.atleast_1d(field).view(np.float64) if field.dtype.names else field
