@@ -17,6 +17,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from services.biomech.two_sensor_knee.flexion import angle_of_verticals
 from services.biomech.two_sensor_knee.memory import (
     OUTPUTS,
     allocate_memory,
@@ -26,6 +27,7 @@ from services.biomech.two_sensor_knee.memory import (
 )
 from services.biomech.two_sensor_knee.parameters import KneeAxisParameters
 from services.biomech.two_sensor_knee.sample import advance_many
+from services.biomech.two_sensor_knee.turns import wrapped
 from services.flow.node import State
 
 
@@ -91,6 +93,19 @@ class KneeAxis:
         knee["zero"], knee["is_zero_set"] = knee["angle"], 1.0
         self._memory["output"][0, OUTPUTS.index("datum")] = DATUMS.index(Datum.SET)
 
+    def declare_standing(self, up: NDArray[np.float64]) -> None:
+        """0 is where both verticals, up (2, 3) in the frame of each sensor, are one; nothing before there is an angle.
+
+        Unlike `declare_zero` it may be told of a pose long ago, and again when the axes have become better.
+        """
+        knee = self._memory["knee"][0]
+        if knee["has_angle"] == 0.0:
+            return
+        standing = angle_of_verticals(_plain(up), self.axes, np.array(self._memory["across"][0]))
+        knee["zero"] = knee["angle"] + wrapped(standing - knee["angle"])
+        knee["is_zero_set"] = 1.0
+        self._memory["output"][0, OUTPUTS.index("datum")] = DATUMS.index(Datum.SET)
+
     def declare_mounting(self, leftward: NDArray[np.float64], upward: NDArray[np.float64]) -> None:
         """Say roughly how the sensors are worn, for legs that do not show which way they bend, as a seated one.
 
@@ -128,6 +143,18 @@ class KneeAxis:
         self._memory["joint_fast"], self._memory["joint"] = 0.0, 0.0
 
     @property
+    def has_angle(self) -> bool:
+        """Whether the reading is of the last sample: the axis has been found, however well."""
+        return bool(self._memory["knee"][0]["has_angle"] > 0.0)
+
+    @property
+    def is_joint_known(self) -> bool:
+        """Whether the arms can be believed: enough of the knee's motion was seen, and both sensors agree on it."""
+        knee, parameters = self._memory["knee"][0], self.parameters
+        has_moved = knee["joint_moving_s"] >= parameters.joint_motion_s
+        return bool(has_moved and knee["joint_coherence"] >= parameters.joint_coherence)
+
+    @property
     def axes(self) -> NDArray[np.float64]:
         """Flexion axis in the frame of each sensor, (2, 3); zeros before any motion."""
         return np.array(self._memory["axes"][0])
@@ -142,6 +169,21 @@ class KneeAxis:
         """The vertical in the frame of each sensor, (2, 3), at the last sample."""
         w, x, y, z = self._memory["levels"]["quat"][0].T
         return np.stack([2.0 * (x * y + w * z), 1.0 - 2.0 * (x * x + z * z), 2.0 * (y * z - w * x)], axis=1)
+
+    @property
+    def standing(self) -> NDArray[np.float64]:
+        """The vertical in the frame of each sensor at the tallest rest, (2, 3); zeros without one."""
+        return np.array(self._memory["standing"][0])
+
+    @property
+    def gyro_bias(self) -> NDArray[np.float64]:
+        """Of each sensor, (2, 3) rad/s."""
+        return np.array(self._memory["levels"]["bias"][0])
+
+    @property
+    def R_thigh_from_shank(self) -> NDArray[np.float64]:
+        """Relative orientation of the sensors at the last sample, (3, 3); zeros before the headings are tied."""
+        return np.array(self._memory["relative"][0])
 
     def snapshot(self) -> State:
         """Everything that changes, as JSON values."""
