@@ -198,6 +198,15 @@ def test_what_was_not_seen_is_not_told():
     assert not estimator.R_thigh_from_shank.any()
 
 
+def test_a_restored_estimator_says_the_same_of_the_last_sample():
+    leg = record(walking(), 8.0, RATE_HZ, Sensors(MOUNTINGS[0]))
+    _, estimator = run(leg)
+    other = KneeAxis(estimator.parameters)
+    other.restore(json.loads(json.dumps(estimator.snapshot())))
+    assert other.reading() == estimator.reading()
+    np.testing.assert_array_equal(other.up, estimator.up)
+
+
 def test_the_axis_is_not_believed_before_it_was_seen():
     leg = record(walking(start_s=6.0), 20.0, RATE_HZ)
     out, _ = run(leg)
