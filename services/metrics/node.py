@@ -6,10 +6,13 @@ from schemas.metrics import SessionMetrics
 from schemas.rhythm import LearnedRhythm
 from schemas.session import SessionDescription
 from schemas.signals import LEARNED_RHYTHM, METRICS, REPETITION, STRIDE, TASK_PHASE, Signal
-from schemas.vocabulary import Side
+from schemas.tasks import Repetition
+from schemas.vocabulary import Segment, Side, Task
+from services.biomech.event_sources import worn_segments
 from services.flow.message import Message, Output, Stream
 from services.flow.node import Node, State
 from services.metrics.parameters import MetricsParameters
+from services.metrics.repetitions import RepetitionTotals
 from services.metrics.rhythms import rhythm_metrics
 from services.metrics.session_totals import SessionTotals
 
@@ -20,7 +23,8 @@ class MetricsNode:
     """Metrics after each stride of both feet, and the final ones at the end.
 
     When only one foot is seen, they come after every second stride of that foot. Learned rhythms are compared in the
-    final ones only: until both streams have ended, it depends on chance which of them has come further.
+    final ones only: until both streams have ended, it depends on chance which of them has come further. For the same
+    reason a session with an exercise tells of the exercise alone, after each repetition, until it ends.
     """
 
     outputs: tuple[Signal, ...] = (METRICS,)
@@ -40,12 +44,17 @@ class MetricsNode:
         self._known = description.known_rhythms
         self._learned: LearnedRhythm | None = None
         self._totals = SessionTotals()
+        self._is_exercise = description.task is Task.KNEE_FLEXION
+        self._repetitions = RepetitionTotals(_exercised(description) if self._is_exercise else (), parameters)
         self._unreported = dict.fromkeys(Side, 0)
         self._captured_ns = 0
+        self._repeated_ns = 0
 
     def step(self, message: Message) -> list[Output]:
-        """Take a stride, or what the rhythm has learned so far."""
+        """Take a stride, a repetition, or what the rhythm has learned so far."""
         stride = message.payload
+        if isinstance(stride, Repetition):
+            return self._take_repetition(stride, message.envelope.captured_ns)
         if isinstance(stride, LearnedRhythm):
             self._learned = stride
         if not isinstance(stride, Stride):
@@ -53,28 +62,39 @@ class MetricsNode:
         self._captured_ns = max(self._captured_ns, message.envelope.captured_ns)
         self._totals.add(stride)
         self._unreported[stride.side] += 1
-        if all(self._unreported.values()) or max(self._unreported.values()) > 1:
+        if not self._is_exercise and (all(self._unreported.values()) or max(self._unreported.values()) > 1):
             self._unreported = dict.fromkeys(Side, 0)
             return [self._report(final=False)]
         return []
+
+    def _take_repetition(self, repetition: Repetition, captured_ns: int) -> list[Output]:
+        self._repetitions.add(repetition)
+        self._repeated_ns = max(self._repeated_ns, captured_ns)
+        metrics = self._repetitions.metrics()
+        payload = SessionMetrics(
+            captured_ns=self._repeated_ns, final=False, metrics=metrics, curves=[], phases=[], repetitions=[]
+        )
+        return [Output(METRICS, self._repeated_ns, payload)]
 
     def finish(self) -> list[Output]:
         """The final metrics, even of a session without a stride."""
         return [self._report(final=True)]
 
     def _report(self, *, final: bool) -> Output:
+        captured_ns = max(self._captured_ns, self._repeated_ns)
         payload = SessionMetrics(
-            captured_ns=self._captured_ns,
+            captured_ns=captured_ns,
             final=final,
             metrics=[
+                *self._repetitions.metrics(),
                 *self._totals.metrics(self._parameters),
                 *rhythm_metrics(self._learned if final else None, self._known, final=final),
             ],
             curves=self._totals.curves(self._parameters),
             phases=[],
-            repetitions=[],
+            repetitions=self._repetitions.first if final else [],
         )
-        return Output(METRICS, self._captured_ns, payload)
+        return Output(METRICS, captured_ns, payload)
 
     def rejections(self) -> list[Rejection]:
         """None: strides that do not count are metrics of their own."""
@@ -86,6 +106,8 @@ class MetricsNode:
             "totals": self._totals.snapshot(),
             "unreported": {side.value: number for side, number in self._unreported.items()},
             "captured_ns": self._captured_ns,
+            "repetitions": self._repetitions.snapshot(),
+            "repeated_ns": self._repeated_ns,
             "learned": None if self._learned is None else self._learned.model_dump(mode="json"),
         }
 
@@ -94,8 +116,16 @@ class MetricsNode:
         self._totals.restore(state["totals"])
         self._unreported = {side: state["unreported"][side.value] for side in Side}
         self._captured_ns = state["captured_ns"]
+        self._repetitions.restore(state["repetitions"])
+        self._repeated_ns = state["repeated_ns"]
         learned = state["learned"]
         self._learned = None if learned is None else LearnedRhythm.model_validate(learned)
+
+
+def _exercised(description: SessionDescription) -> list[Side]:
+    """The knees that wear a sensor above and below."""
+    worn = worn_segments(description.hubs)
+    return [side for side in Side if {Segment(f"thigh_{side}"), Segment(f"shank_{side}")} <= worn]
 
 
 def build(description: SessionDescription) -> Node:

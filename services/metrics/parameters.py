@@ -5,7 +5,7 @@ from dataclasses import dataclass
 
 @dataclass(frozen=True, slots=True)
 class MetricsParameters:
-    """How many strides a number must rest on."""
+    """How many strides or repetitions a number must rest on."""
 
     least_strides: int = 3
     """strides below which a mean is withheld (proposal; reliable means need 6 of each foot)."""
@@ -14,3 +14,11 @@ class MetricsParameters:
     least_steady_strides: int = 3
     """steady strides of each foot that is seen, from which on the starting and stopping ones are left out; as many as
     a mean needs."""
+
+    least_repetitions: int = 3
+    """repetitions of an exercise below which their numbers are withheld; a line needs as many to have an error."""
+    longest_pause_s: float = 10.0
+    """s of rest after a repetition beyond which the next one begins another set; prescribed holds and rests within a
+    set last 5 to 10 (proposal)."""
+    most_repetitions: int = 1000
+    """repetitions told one by one; what a message takes."""

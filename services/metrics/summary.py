@@ -37,11 +37,13 @@ def shown(
     )
 
 
-def too_few(strides: int, least: int) -> str | None:
-    """Why a number is withheld; None when it rests on enough strides."""
+def too_few(strides: int, least: int, noun: str = "strides") -> str | None:
+    """Why a number is withheld; None when it rests on enough strides, or on enough of what `noun` says."""
     if strides >= least:
         return None
-    return f"{strides} of at least {least} strides" if strides else "not observed in any stride that counts"
+    if strides or noun != "strides":
+        return f"{strides} of at least {least} {noun}"
+    return "not observed in any stride that counts"
 
 
 def independent_strides(moments: Moments, definition: Definition) -> float:
@@ -52,24 +54,26 @@ def independent_strides(moments: Moments, definition: Definition) -> float:
     return moments.count if definition.per_side else max(1.0, moments.count / 2)
 
 
-def mean_metric(definition: Definition, side: str | None, moments: Moments, least: int) -> Metric:
+def mean_metric(
+    definition: Definition, side: str | None, moments: Moments, least: int, noun: str = "strides"
+) -> Metric:
     """Mean with standard deviation and standard error SD / sqrt(n)."""
-    because = too_few(moments.count, least)
+    because = too_few(moments.count, least, noun)
     spread = moments.spread()
     if because is not None or spread is None:
-        return withheld(definition, side, moments.count, because or too_few(moments.count, 2) or "")
+        return withheld(definition, side, moments.count, because or too_few(moments.count, 2, noun) or "")
     error = float(spread) / math.sqrt(independent_strides(moments, definition))
     return shown(definition, side, float(moments.mean), float(spread), error, moments.count)
 
 
 def variability_metrics(
-    sd: Definition, cv: Definition, side: str | None, moments: Moments, least: int
+    sd: Definition, cv: Definition, side: str | None, moments: Moments, least: int, noun: str = "strides"
 ) -> tuple[Metric, Metric]:
     """SD and CV = SD / mean. Their standard error is value / sqrt(2 (n - 1)), for normally distributed strides."""
-    because = too_few(moments.count, least)
+    because = too_few(moments.count, least, noun)
     spread = moments.spread()
     if because is not None or spread is None:
-        because = because or too_few(moments.count, 2) or ""
+        because = because or too_few(moments.count, 2, noun) or ""
         return withheld(sd, side, moments.count, because), withheld(cv, side, moments.count, because)
     value, mean, n = float(spread), float(moments.mean), moments.count
     error = 1 / math.sqrt(2 * max(1.0, independent_strides(moments, sd) - 1))

@@ -5,12 +5,14 @@ import pytest
 
 from services.metrics import definitions
 from services.metrics.definitions import METRICS
+from services.metrics.repetition_definitions import REPETITIONS
 
 README = (Path(definitions.__file__).parent / "README.md").read_text()
-UNITS = {"s", "m", "m/s", "rad", "1", "steps/min"}
+UNITS = {"s", "m", "m/s", "rad", "1", "steps/min", "rad/s", "rad/repetition", "repetitions/min"}
+ALL = (*METRICS, *REPETITIONS)
 
 
-@pytest.mark.parametrize("definition", METRICS, ids=lambda definition: definition.name)
+@pytest.mark.parametrize("definition", ALL, ids=lambda definition: definition.name)
 def test_a_metric_is_defined_in_full(definition):
     assert re.fullmatch(r"[a-z]+(_[a-z]+)*", definition.name)
     assert definition.unit in UNITS
@@ -18,18 +20,18 @@ def test_a_metric_is_defined_in_full(definition):
     assert len(definition.sentence) > 20
 
 
-@pytest.mark.parametrize("definition", METRICS, ids=lambda definition: definition.name)
+@pytest.mark.parametrize("definition", ALL, ids=lambda definition: definition.name)
 def test_a_metric_is_documented(definition):
     sides = "each side" if definition.per_side else "whole body"
     assert f"| `{definition.name}` | {definition.unit} | {sides} | {definition.sentence} |" in README
 
 
 def test_the_documentation_has_no_other_metrics():
-    assert len(re.findall(r"^\| `", README, re.MULTILINE)) == len(METRICS)
+    assert len(re.findall(r"^\| `", README, re.MULTILINE)) == len(ALL)
 
 
 def test_names_are_unique():
-    names = [definition.name for definition in METRICS]
+    names = [definition.name for definition in ALL]
     assert len(set(names)) == len(names)
 
 
