@@ -3,11 +3,19 @@ import assert from "node:assert/strict";
 import { test } from "node:test";
 
 const sources = new URL("../../../services/gateway/web/src/", import.meta.url);
-const { figureOf, headingOf, between, rotate, Stage } = await import(new URL("figure.js", sources));
+const { figureOf, headingOf, between, kneeFan, rotate } = await import(new URL("figure.js", sources));
+const { Stage } = await import(new URL("stage.js", sources));
 const { byTrouble, connectionOf, jointName, lastData, metricGroup, metricName, segmentName, stateOf } = await import(
   new URL("words.js", sources)
 );
+const { misplacedText, qualityText } = await import(new URL("words.js", sources));
 const { bytes, clock, degrees, number, shown } = await import(new URL("units.js", sources));
+const { kneesOf } = await import(new URL("worn.js", sources));
+const { measuresOf } = await import(new URL("repetition_counter.js", sources));
+const { extentOf } = await import(new URL("phase_strip.js", sources));
+const { attemptsOf } = await import(new URL("phase_timeline.js", sources));
+const { ticksOf } = await import(new URL("drawing.js", sources));
+const { Range } = await import(new URL("knee_panel.js", sources));
 const { LiveSocket } = await import(new URL("live_socket.js", sources));
 
 const QUARTER = Math.SQRT1_2;
@@ -57,11 +65,64 @@ test("ankles hang below the knees by the shank's length and validity is kept per
   assert.equal(figure.valid.shank_right, true);
 });
 
-test("a pose that lacks a bone is not drawn rather than guessed", () => {
+test("a pose without a whole leg is not drawn rather than guessed", () => {
   const pose = standing();
   delete pose.segments.shank_right;
+  delete pose.segments.thigh_left;
   assert.equal(figureOf(pose, BODY), null);
   assert.equal(figureOf({ segments: {} }, BODY), null);
+});
+
+test("of a knee session one leg is drawn, from its hip, and nothing else", () => {
+  const { thigh_left, shank_left } = standing().segments;
+  const figure = figureOf({ segments: { thigh_left, shank_left } }, BODY);
+  assert.deepEqual(figure.sides, ["left"]);
+  assert.equal(figure.whole, false);
+  close(figure.points.hip_left, [0, 0, 0]);
+  close(figure.points.ankle_left, [0, -0.83, 0]);
+  assert.ok(!Object.keys(figure.points).some((name) => name.endsWith("right") || /pelvis|neck/.test(name)));
+});
+
+test("both legs without a pelvis are drawn side by side", () => {
+  const { pelvis, ...legs } = standing().segments;
+  const figure = figureOf({ segments: legs }, BODY);
+  assert.deepEqual(figure.sides, ["left", "right"]);
+  assert.equal(figure.points.hip_right[2] - figure.points.hip_left[2], 0.18);
+  assert.equal("pelvis_top" in figure.points, false);
+});
+
+const lifted = (angle) => [Math.cos(angle / 2), 0, 0, Math.sin(angle / 2)];
+const seatedLeg = (knee) => ({
+  segments: {
+    thigh_right: bone([0, 0.5, 0.09], lifted(Math.PI / 2)),
+    shank_right: bone([0.42, 0.5, 0.09], lifted(Math.PI / 2 - knee)),
+  },
+});
+
+test("a leg that sits faces forward, has a seat, and keeps the floor under a shank that is stretched out", () => {
+  const stage = new Stage();
+  const bent = figureOf(seatedLeg(Math.PI / 2), BODY);
+  assert.ok(Math.abs(bent.heading) < 1e-9);
+  stage.follow(bent, 0.05);
+  assert.equal(stage.seated, true);
+  assert.ok(Math.abs(stage.ground + 0.41) < 1e-9);
+  stage.follow(figureOf(seatedLeg(0), BODY), 0.05);
+  assert.ok(Math.abs(stage.ground + 0.41) < 1e-9);
+  assert.equal(stage.seatHeight(bent) > 0.3, true);
+  const { thigh_right, shank_right } = standing().segments;
+  stage.follow(figureOf({ segments: { thigh_right, shank_right } }, BODY), 0.05);
+  assert.equal(stage.seatHeight(bent), null);
+});
+
+test("the fan at a knee opens from the straight leg to the shank, as wide as its deviation", () => {
+  const fan = kneeFan(figureOf(seatedLeg(Math.PI / 2), BODY), "right", 0.05);
+  close(fan.open.at(0), [1, 0, 0]);
+  close(fan.open.at(-1), [0, -1, 0]);
+  const width = Math.acos(fan.spread[0].reduce((sum, value, axis) => sum + value * fan.spread.at(-1)[axis], 0));
+  assert.ok(Math.abs(width - 0.2) < 1e-6);
+  const doubtful = seatedLeg(1);
+  doubtful.segments.shank_right.valid = false;
+  assert.equal(kneeFan(figureOf(doubtful, BODY), "right", 0.05), null);
 });
 
 test("between two figures turns the short way round", () => {
@@ -96,6 +157,82 @@ test("each state has its word, the worst first", () => {
   assert.equal(stateOf(now({ sensors: [{ sensor: "a", state: "stuck" }] })).word, "Check left shank sensor");
 });
 
+test("what is worn otherwise than declared is said in plain words", () => {
+  assert.equal(stateOf(now({ misplaced: { left: ["other_leg"] } })).word, "Sides may be swapped");
+  assert.equal(stateOf(now({ misplaced: { left: ["other_leg"] } })).tone, "check");
+  assert.equal(stateOf(now({ misplaced: { right: ["swapped"] } })).word, "Thigh and shank may be swapped");
+  assert.equal(stateOf(now({ misplaced: { right: ["shank_upside_down"] } })).word, "Right shank sensor upside down");
+  assert.equal(stateOf(now({ misplaced: {}, age_s: 0.1 })).word, "Live");
+  assert.match(misplacedText({ left: ["thigh_upside_down", "other_leg"] }), /left thigh .* upside down.*right leg/);
+  assert.equal(misplacedText({}), "");
+  assert.equal(misplacedText(undefined), "");
+});
+
+test("the quality line says what the numbers rest on", () => {
+  const counts = (name, value) => ({ name, side: "left", value });
+  assert.equal(
+    qualityText([counts("strides_counted", 12), counts("strides_rejected", 2)], "quiet standing"),
+    "Quality: 12 strides count, 2 left out  ·  zero is quiet standing",
+  );
+  assert.equal(qualityText([counts("repetitions_counted", 8)], null), "Quality: 8 repetitions count");
+  assert.equal(qualityText([counts("strides_counted", 0)], null), "");
+});
+
+test("only what the sensors can tell is shown", () => {
+  const worn = (...segments) => segments.map((segment) => ({ segment }));
+  assert.deepEqual(kneesOf(worn("thigh_left", "shank_left")), ["left"]);
+  assert.deepEqual(kneesOf(worn("thigh_left", "shank_left", "thigh_right", "shank_right")), ["left", "right"]);
+  assert.equal(kneesOf(worn("pelvis", "thigh_left", "shank_left")), null);
+  assert.equal(kneesOf(worn("foot_left")), null);
+});
+
+test("a repetition is measured the same way whichever end it rests at", () => {
+  const times = { start_s: 1, turn_s: 2, end_s: 4 };
+  const flexing = measuresOf({ start_angle: 0.1, turn_angle: 1.9, end_angle: 0, ...times });
+  assert.deepEqual(
+    [flexing.smallest, flexing.largest, flexing.range, flexing.flexing_s, flexing.extending_s],
+    [0, 1.9, 1.9, 1, 2],
+  );
+  const seated = measuresOf({ start_angle: 1.6, turn_angle: 0.1, end_angle: 1.5, ...times });
+  assert.deepEqual([seated.smallest, seated.largest, seated.flexing_s, seated.extending_s], [0.1, 1.6, 2, 1]);
+});
+
+test("a timed test lasts from standing up until the person sits", () => {
+  const phase = (name, start_s, end_s) => ({ phase: name, start_s, end_s, start_std_s: 0.03, end_std_s: 0.04 });
+  assert.deepEqual(extentOf([]), { from: null, to: null, spread_s: null });
+  assert.equal(extentOf([phase("sit_to_stand", 2, 3), phase("walk_out", 3, null)]).to, null);
+  const done = extentOf([phase("sit_to_stand", 2, 3), phase("turn_to_sit", 9, 12)]);
+  assert.deepEqual([done.from, done.to], [2, 12]);
+  assert.ok(Math.abs(done.spread_s - 0.05) < 1e-12);
+  const attempts = attemptsOf([
+    { attempt: 0, ...phase("sit_to_stand", 2, 3) },
+    { attempt: 1, ...phase("sit_to_stand", 22, 23) },
+  ]);
+  assert.deepEqual(
+    attempts.map((each) => [each.attempt, each.from]),
+    [
+      [0, 2],
+      [1, 22],
+    ],
+  );
+});
+
+test("axes are divided into round parts", () => {
+  assert.deepEqual(ticksOf(0, 12.5, 6), [0, 5, 10]);
+  assert.deepEqual(ticksOf(0, 4, 5), [0, 1, 2, 3, 4]);
+  assert.deepEqual(ticksOf(-10, 120, 7), [0, 20, 40, 60, 80, 100, 120]);
+});
+
+test("the range so far takes known angles only", () => {
+  const range = new Range();
+  range.add(undefined);
+  assert.equal(range.least, null);
+  for (const angle of [0.4, 0.1, undefined, 1.1]) range.add(angle);
+  assert.deepEqual([range.least, range.largest], [0.1, 1.1]);
+  range.reset();
+  assert.equal(range.largest, null);
+});
+
 test("trouble is sorted first", () => {
   const states = [now(), now({ age_s: 9 }), now({ age_s: null }), now({ age_s: 2 })].map(stateOf);
   assert.deepEqual(
@@ -121,6 +258,10 @@ test("names are written for readers", () => {
   assert.equal(metricGroup({ name: "stance_fraction", side: "left" }), "sides");
   assert.equal(metricGroup({ name: "rhythm_side_distance", side: null }), "legs");
   assert.equal(metricGroup({ name: "rhythm_distance_exemplar", side: "left" }), "sides");
+  assert.equal(metricGroup({ name: "repetition_range", side: "left" }), "exercise");
+  assert.equal(metricGroup({ name: "repetition_range_sd", side: "left" }), null);
+  assert.equal(metricGroup({ name: "tug_total", side: null }), "headlines");
+  assert.equal(metricName("tug_sit_to_stand"), "Stand up");
   assert.equal(lastData(0.21), "last data 0.2 s ago");
 });
 

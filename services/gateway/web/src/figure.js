@@ -5,6 +5,7 @@ export const SIDES = ["left", "right"];
 const PELVIS_HEIGHT_M = 0.11;
 const FOOT_LENGTH_M = 0.2;
 const TRUNK_M = 0.42;
+const LABEL = { ahead: 0.2, apart: 0.1 };
 
 /** Vector seen from the world, of a vector seen from the segment. */
 export function rotate([w, x, y, z], [a, b, c]) {
@@ -20,66 +21,108 @@ export function headingOf(quat) {
   return Math.atan2(-z, x);
 }
 
-const plus = (a, b) => [a[0] + b[0], a[1] + b[1], a[2] + b[2]];
+export const plus = (a, b) => [a[0] + b[0], a[1] + b[1], a[2] + b[2]];
+export const minus = (a, b) => [a[0] - b[0], a[1] - b[1], a[2] - b[2]];
+export const times = (a, factor) => a.map((value) => value * factor);
+export const dot = (a, b) => a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
+export const unit = (a) => times(a, 1 / Math.max(1e-9, Math.hypot(...a)));
+const middle = (a, b) => times(plus(a, b), 0.5);
 
 /**
- * Points of the legs by name, which bones may be trusted, and where the body faces.
- * `body` has the lengths of the session's description. Null when the pose has no pelvis.
+ * Points of the worn legs by name, which bones may be trusted, and where the body faces.
+ * `body` has the lengths of the session's description. Pelvis and trunk are there only with both legs and a pelvis;
+ * legs alone hang from their hips, which then are the origin. Null when there is no whole leg.
  */
 export function figureOf(pose, body) {
-  const pelvis = pose.segments.pelvis;
-  if (!pelvis) return null;
-  const points = { pelvis: pelvis.position };
-  const valid = { pelvis: pelvis.valid };
-  for (const side of SIDES) {
-    const thigh = pose.segments[`thigh_${side}`];
-    const shank = pose.segments[`shank_${side}`];
-    if (!thigh || !shank) return null;
-    const down = rotate(shank.quat_world_from_segment, [0, -body.shank_length_m, 0]);
-    const ankle = plus(shank.position, down);
-    points[`hip_${side}`] = thigh.position;
-    points[`knee_${side}`] = shank.position;
-    points[`ankle_${side}`] = ankle;
-    points[`toe_${side}`] = plus(ankle, rotate(shank.quat_world_from_segment, [FOOT_LENGTH_M, -0.04, 0]));
-    valid[`thigh_${side}`] = thigh.valid;
-    valid[`shank_${side}`] = shank.valid;
+  const sides = SIDES.filter((side) => pose.segments[`thigh_${side}`] && pose.segments[`shank_${side}`]);
+  if (sides.length === 0) return null;
+  const points = {};
+  const valid = {};
+  for (const side of sides) addLeg(points, valid, pose.segments, side, body);
+  addLabels(points, pose.segments, sides);
+  const { pelvis } = pose.segments;
+  const whole = Boolean(pelvis) && sides.length === 2;
+  if (whole) addTrunk(points, valid, pelvis);
+  else hang(points, sides);
+  const heading = whole ? headingOf(pelvis.quat_world_from_segment) : headingOfThighs(pose.segments, sides);
+  return { points, valid, heading, sides, whole };
+}
+
+function addLeg(points, valid, segments, side, body) {
+  const [thigh, shank] = [segments[`thigh_${side}`], segments[`shank_${side}`]];
+  const ankle = plus(shank.position, rotate(shank.quat_world_from_segment, [0, -body.shank_length_m, 0]));
+  points[`hip_${side}`] = thigh.position;
+  points[`knee_${side}`] = shank.position;
+  points[`ankle_${side}`] = ankle;
+  points[`toe_${side}`] = plus(ankle, rotate(shank.quat_world_from_segment, [FOOT_LENGTH_M, -0.04, 0]));
+  valid[`thigh_${side}`] = thigh.valid;
+  valid[`shank_${side}`] = shank.valid;
+}
+
+/** Places for text: before the knee; with two, the left one's behind and both apart, so that none covers the other. */
+function addLabels(points, segments, sides) {
+  const both = sides.length === 2;
+  for (const side of sides) {
+    const bones = [segments[`thigh_${side}`], segments[`shank_${side}`]];
+    const [fronts, rights] = [[1, 0, 0], [0, 0, 1]].map((axis) =>
+      unit(bones.map((bone) => rotate(bone.quat_world_from_segment, axis)).reduce(plus)),
+    );
+    const outward = side === "left" ? -1 : 1;
+    const ahead = times(fronts, LABEL.ahead * (both ? outward : 1));
+    points[`label_${side}`] = plus(points[`knee_${side}`], plus(ahead, times(rights, both ? outward * LABEL.apart : 0)));
   }
+}
+
+function addTrunk(points, valid, pelvis) {
   const up = rotate(pelvis.quat_world_from_segment, [0, 1, 0]);
-  const middle = points.hip_left.map((value, axis) => (value + points.hip_right[axis]) / 2);
-  points.pelvis_top = plus(
-    middle,
-    up.map((value) => value * PELVIS_HEIGHT_M),
-  );
+  points.pelvis = pelvis.position;
+  points.pelvis_top = plus(middle(points.hip_left, points.hip_right), times(up, PELVIS_HEIGHT_M));
   points.neck = plus(points.pelvis_top, [0, TRUNK_M, 0]);
-  return { points, valid, heading: headingOf(pelvis.quat_world_from_segment) };
+  valid.pelvis = pelvis.valid;
+}
+
+function hang(points, sides) {
+  const hips = sides.map((side) => points[`hip_${side}`]);
+  const origin = hips.length === 2 ? middle(...hips) : hips[0];
+  for (const name of Object.keys(points)) points[name] = minus(points[name], origin);
+}
+
+// By the axis of flexion, which stays level when the person sits and the thigh's front looks up.
+function headingOfThighs(segments, sides) {
+  const rights = sides.map((side) => rotate(segments[`thigh_${side}`].quat_world_from_segment, [0, 0, 1]));
+  const [x, , z] = rights.reduce(plus);
+  return Math.atan2(x, z);
 }
 
 /** A figure between two, for a screen that is faster than the data. Validity is the newer one's. */
 export function between(older, newer, share) {
   const points = {};
-  for (const name of Object.keys(newer.points)) {
-    points[name] = newer.points[name].map((value, axis) => value * share + older.points[name][axis] * (1 - share));
+  for (const [name, point] of Object.entries(newer.points)) {
+    const before = older.points[name] ?? point;
+    points[name] = point.map((value, axis) => value * share + before[axis] * (1 - share));
   }
   const turn = Math.atan2(Math.sin(newer.heading - older.heading), Math.cos(newer.heading - older.heading));
-  return { points, valid: newer.valid, heading: older.heading + share * turn };
+  return { ...newer, points, heading: older.heading + share * turn };
 }
 
-/** Follows the lowest ankle of the last strides and the direction of walking, both slowly, so the view stays calm. */
-export class Stage {
-  constructor() {
-    this.heading = null;
-    this.ground = null;
-  }
+/** Angle of the steepest thigh from hanging straight down, in rad: small in standing and walking, large in sitting. */
+export function thighTilt({ points, sides }) {
+  const tilts = sides.map((side) => Math.acos(unit(minus(points[`hip_${side}`], points[`knee_${side}`]))[1]));
+  return Math.min(...tilts);
+}
 
-  follow(figure, elapsed_s) {
-    const lowest = Math.min(figure.points.ankle_left[1], figure.points.ankle_right[1]);
-    if (this.heading === null) {
-      this.heading = figure.heading;
-      this.ground = lowest;
-    }
-    const turn = Math.atan2(Math.sin(figure.heading - this.heading), Math.cos(figure.heading - this.heading));
-    this.heading += turn * (1 - Math.exp(-elapsed_s / 0.8));
-    // Down at once, up slowly: a foot never sinks into the floor.
-    this.ground = lowest < this.ground ? lowest : this.ground + (lowest - this.ground) * (1 - Math.exp(-elapsed_s / 4));
-  }
+/**
+ * What is drawn at a knee: `open`, the directions from the thigh's straight continuation to the shank, and `spread`,
+ * those within two standard deviations of the shank's. Unit vectors; null for a knee that is not known.
+ */
+export function kneeFan({ points, valid, sides }, side, std) {
+  if (!sides.includes(side) || !valid[`thigh_${side}`] || !valid[`shank_${side}`]) return null;
+  const along = unit(minus(points[`knee_${side}`], points[`hip_${side}`]));
+  const shank = unit(minus(points[`ankle_${side}`], points[`knee_${side}`]));
+  const across = unit(minus(shank, times(along, dot(shank, along))));
+  const bend = Math.acos(Math.min(1, Math.max(-1, dot(shank, along))));
+  const at = (angle) => plus(times(along, Math.cos(angle)), times(across, Math.sin(angle)));
+  const sweep = (from, to, count) =>
+    Array.from({ length: count + 1 }, (_, step) => at(from + ((to - from) * step) / count));
+  return { open: sweep(0, bend, 24), spread: sweep(bend - 2 * std, bend + 2 * std, 12) };
 }

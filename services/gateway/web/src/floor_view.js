@@ -1,8 +1,9 @@
 // The floor: who walks now, trouble first, and what has been recorded.
 import { get } from "./api.js";
 import { el, fill, say, table } from "./dom.js";
+import { extentOf } from "./phase_strip.js";
 import { clock, number, when } from "./units.js";
-import { STALE_S, STORED_WORDS, byTrouble, lastData, nobody, stateOf } from "./words.js";
+import { PHASES, STALE_S, STORED_WORDS, byTrouble, lastData, misplacedText, nobody, stateOf } from "./words.js";
 
 const PAGE = 20;
 const COLUMNS = ["Session", "Patient", "Started", "Length#", "Strides#", "Speed#", "Cadence#", "State"];
@@ -134,17 +135,9 @@ class Card {
     this.code = el("span", { class: "code" });
     this.word = el("p", { class: "chip" });
     this.advice = el("p", { class: "advice" });
-    this.elapsed = el("dd");
-    this.cadence = el("dd");
-    this.strides = el("dd");
+    this.facts = ["time", "second", "third"].map(() => ({ name: el("dt"), value: el("dd") }));
     this.age = el("p", { class: "quiet" });
-    const facts = el(
-      "dl",
-      { class: "facts" },
-      fact("Time", this.elapsed),
-      fact("Cadence", this.cadence),
-      fact("Strides", this.strides),
-    );
+    const facts = el("dl", { class: "facts" }, ...this.facts.map(({ name, value }) => el("div", {}, name, value)));
     this.node = el(
       "a",
       { class: "card", href: `#/sessions/${session.id}` },
@@ -162,16 +155,37 @@ class Card {
     say(this.word, word);
     this.word.dataset.tone = tone;
     this.node.dataset.tone = tone;
-    say(this.elapsed, clock(session.elapsed_s));
-    say(this.cadence, session.cadence_per_min === null ? "–" : `${number(session.cadence_per_min, 0)} /min`);
-    say(this.strides, String(session.strides));
-    say(this.advice, session.phase === "estimating" ? session.message : "");
+    factsOf(session).forEach(([name, value], place) => {
+      say(this.facts[place].name, name);
+      say(this.facts[place].value, value);
+    });
+    say(this.advice, misplacedText(session.misplaced) || (session.phase === "estimating" ? session.message : ""));
+    this.advice.title = this.advice.textContent;
     say(this.age, lastData(age_s));
     this.node.classList.toggle("stale", age_s !== null && age_s > STALE_S);
   }
 }
 
-const fact = (name, value) => el("div", {}, el("dt", {}, name), value);
+/** Three facts that matter for what the person does. */
+function factsOf(session) {
+  const time = ["Time", clock(session.elapsed_s)];
+  if (session.task === "knee_flexion") return [time, ["Repetitions", String(session.repetitions)], ["", ""]];
+  if (session.task === "timed_up_and_go") return [time, ...timedFacts(session.task_phases)];
+  const cadence = session.cadence_per_min === null ? "–" : `${number(session.cadence_per_min, 0)} /min`;
+  return [time, ["Cadence", cadence], ["Strides", String(session.strides)]];
+}
+
+function timedFacts(phases) {
+  const running = phases.find((phase) => phase.end_s === null);
+  const { from, to } = extentOf(phases);
+  const total = to === null ? "–" : `${number(to - from, 1)} s`;
+  return [
+    ["Part", running ? PHASES[running.phase] : to === null ? "–" : "Done"],
+    ["Total", total],
+  ];
+}
+
+const withUnit = (value, digits, unit) => (value ? `${number(value, digits)} ${unit}` : "–");
 
 function row(session) {
   const { word, tone } = STORED_WORDS[session.state];
@@ -187,9 +201,9 @@ function row(session) {
     ),
     el("td", {}, when(session.started ?? session.created)),
     el("td", { class: "number" }, session.ended ? clock(session.duration_s) : "–"),
-    el("td", { class: "number" }, best ? String(best.strides) : "–"),
-    el("td", { class: "number" }, best ? `${number(best.walking_speed, 2)} m/s` : "–"),
-    el("td", { class: "number" }, best ? `${number(best.cadence_per_min, 0)} /min` : "–"),
+    el("td", { class: "number" }, best?.strides ? String(best.strides) : "–"),
+    el("td", { class: "number" }, withUnit(best?.walking_speed, 2, "m/s")),
+    el("td", { class: "number" }, withUnit(best?.cadence_per_min, 0, "/min")),
     el("td", {}, el("span", { class: "chip small", "data-tone": tone }, word)),
   );
 }

@@ -5,7 +5,7 @@ import { number } from "./units.js";
 const LONGEST_STRIDE_S = 3;
 
 const PER_SIDE = [
-  { name: "Step length", unit: "m", of: (stride) => stride.step_length_m, digits: 2 },
+  { name: "Step length", unit: "m", bothLegs: true, of: (stride) => stride.step_length_m, digits: 2 },
   {
     name: "Stance",
     unit: "%",
@@ -26,28 +26,33 @@ export class LiveNumbers {
       left: el("td", { class: "number" }, "–"),
       right: el("td", { class: "number" }, "–"),
     }));
-    const head = el(
-      "tr",
-      {},
-      el("th", { scope: "col" }, "Last stride"),
-      el("th", { scope: "col", class: "number left" }, "Left"),
-      el("th", { scope: "col", class: "number right" }, "Right"),
-    );
-    const rows = this.cells.map((row) =>
-      el(
-        "tr",
-        {},
-        el("th", { scope: "row" }, row.name, row.unit ? el("span", { class: "unit" }, ` ${row.unit}`) : null),
-        row.left,
-        row.right,
-      ),
-    );
+    this.heads = {
+      left: el("th", { scope: "col", class: "number left" }, "Left"),
+      right: el("th", { scope: "col", class: "number right" }, "Right"),
+    };
+    const head = el("tr", {}, el("th", { scope: "col" }, "Last stride"), this.heads.left, this.heads.right);
+    const rows = this.cells.map((row) => {
+      const unit = row.unit ? el("span", { class: "unit" }, ` ${row.unit}`) : null;
+      row.node = el("tr", {}, el("th", { scope: "row" }, row.name, unit), row.left, row.right);
+      return row.node;
+    });
     this.node = el(
       "div",
       { class: "numbers" },
       el("div", { class: "tiles" }, this.speed.node, this.cadence.node),
       el("table", {}, el("thead", {}, head), el("tbody", {}, ...rows)),
     );
+  }
+
+  /** Legs alone: what needs the other leg or the pelvis is not shown, nor a leg that is not worn. */
+  only(sides) {
+    const both = sides.length === 2;
+    this.speed.node.hidden = !both;
+    for (const side of ["left", "right"]) this.heads[side].hidden = !sides.includes(side);
+    for (const row of this.cells) {
+      row.node.hidden = Boolean(row.bothLegs) && !both;
+      for (const side of ["left", "right"]) row[side].hidden = !sides.includes(side);
+    }
   }
 
   onPose(pose) {

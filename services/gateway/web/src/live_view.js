@@ -1,21 +1,25 @@
 // One running session: skeleton, curves, numbers, sensors. What is older than a second is grey, always.
-import { post } from "./api.js";
-import { RollingChart } from "./charts.js";
+import { ChartPanel } from "./chart_panel.js";
 import { el, fill, say } from "./dom.js";
-import { figureOf } from "./figure.js";
+import { SIDES, figureOf } from "./figure.js";
+import { KneePanel } from "./knee_panel.js";
 import { LiveSocket } from "./live_socket.js";
 import { LiveNumbers } from "./live_numbers.js";
 import { PatientLink } from "./patient_link.js";
+import { PhaseStrip } from "./phase_strip.js";
+import { RepetitionCounter } from "./repetition_counter.js";
+import { SensorList } from "./sensor_list.js";
+import { SessionControls } from "./session_controls.js";
 import { Skeleton2d } from "./skeleton2d.js";
 import { Skeleton3d, canDraw3d } from "./skeleton3d.js";
-import { clock, degrees, number } from "./units.js";
-import { SENSOR_WORDS, STALE_S, lastData, segmentName, stateOf } from "./words.js";
+import { clock } from "./units.js";
+import { STALE_S, lastData, misplacedText, stateOf } from "./words.js";
+import { kneesOf } from "./worn.js";
 
 const JOINTS = [
   { joint: "hip_flexion", title: "Hip flexion", range: [-30, 50] },
   { joint: "knee_flexion", title: "Knee flexion", range: [-10, 80] },
 ];
-const MARK_LENGTHS = [3, 5, 10];
 const VIEWS = { side: "Side", front: "Front", back: "Back" };
 
 export class LiveView {
@@ -23,6 +27,7 @@ export class LiveView {
     this.session = session;
     this.segments = {};
     this.sensors = [];
+    this.misplaced = session.misplaced;
     this.age = null;
     this.status = null;
     this.open = false;
@@ -41,22 +46,22 @@ export class LiveView {
     this.ageText = el("span", { class: "quiet age" });
     this.elapsed = el("span", { class: "elapsed" });
     this.advice = el("p", { class: "banner", role: "status", hidden: true });
+    this.warning = el("p", { class: "banner warning", role: "alert", hidden: true });
     this.link = new PatientLink(this.session);
-    this.markLength = el(
-      "select",
-      { "aria-label": "Seconds of standing" },
-      ...MARK_LENGTHS.map((seconds) => el("option", { value: seconds }, `last ${seconds} s`)),
-    );
-    this.markButton = el(
-      "button",
-      { class: "mark", type: "button", title: "The person stands upright and still", onclick: () => this.mark() },
-      "Standing now",
-    );
-    this.stopButton = el("button", { class: "danger", type: "button", onclick: () => this.stop() }, "Stop");
+    this.controls = new SessionControls(this.session, {
+      onTrouble: (text) => this.advise(text),
+      newest: () => this.atS,
+    });
     this.title = el("h1", { title: this.session.title }, this.session.title);
     this.stage = el("div", { class: "stage" });
-    this.sensorList = el("ul", { class: "sensors" });
-    this.charts = JOINTS.map((joint) => chartPanel(joint));
+    this.sensorList = new SensorList();
+    this.charts = JOINTS.map((joint) => new ChartPanel(joint));
+    this.curves = el("div", { class: "curves" }, ...this.charts.map((chart) => chart.node));
+    this.strip = new PhaseStrip();
+    this.counter = new RepetitionCounter();
+    this.strides = el("section", { class: "panel numbers-panel", "aria-label": "Numbers" }, this.numbers.node);
+    this.key = el("p", { class: "key" });
+    this.showKey(SIDES);
     fill(
       host,
       el(
@@ -68,29 +73,23 @@ export class LiveView {
         this.ageText,
         el("span", { class: "spring" }),
         this.link.node,
-        el("span", { class: "actions" }, this.markLength, this.markButton, this.stopButton),
+        this.controls.node,
       ),
       this.advice,
+      this.warning,
       el(
         "div",
         { class: "live" },
+        this.strip.node,
         el(
           "section",
           { class: "panel body-panel", "aria-label": "Skeleton" },
           this.viewButtons(),
           this.stage,
-          el(
-            "p",
-            { class: "key" },
-            el("b", { class: "left" }, "L left"),
-            el("b", { class: "right" }, "R right"),
-            el("span", {}, "grey: not known now"),
-            el("span", {}, "pale: not measured"),
-          ),
+          this.key,
         ),
-        el("div", { class: "curves" }, ...this.charts.map((chart) => chart.node)),
-        el("section", { class: "panel numbers-panel", "aria-label": "Numbers" }, this.numbers.node),
-        el("section", { class: "panel", "aria-label": "Sensors" }, el("h2", {}, "Sensors"), this.sensorList),
+        this.curves,
+        el("div", { class: "side-column" }, this.counter.node, this.strides, this.sensorList.node),
       ),
     );
     const calm = matchMedia("(prefers-reduced-motion: reduce)").matches;
@@ -125,8 +124,16 @@ export class LiveView {
   handlers = {
     session(message) {
       this.body = message.body;
+      this.arrange(message);
       this.segments = Object.fromEntries(message.sensors.map((sensor) => [sensor.name, sensor.segment]));
       this.link.show(message.patient);
+    },
+    calibration(calibration) {
+      this.misplaced = calibration.misplaced;
+      const warning = misplacedText(calibration.misplaced);
+      say(this.warning, warning);
+      this.warning.hidden = warning === "";
+      this.sensorList.showDatum(calibration.datum);
     },
     patient(message) {
       this.link.show(message.patient);
@@ -140,10 +147,12 @@ export class LiveView {
       this.advise([pose.notice, pose.phase === "estimating" ? pose.message : ""].filter(Boolean).join(". "));
       this.atS = pose.at_s;
       const figure = this.body && figureOf(pose, this.body);
-      if (figure) this.skeleton.show(figure);
+      if (figure) this.skeleton.show(figure, kneeAngles(pose));
       for (const chart of this.charts) chart.add(pose, pose.trail);
+      this.knee?.add(pose, pose.trail);
+      this.strip.show(pose.at_s);
       this.numbers.onPose(pose);
-      this.showSensors();
+      this.sensorList.show(pose.sensors, this.segments);
       this.tick();
     },
     status(status) {
@@ -156,10 +165,40 @@ export class LiveView {
     stride(stride) {
       this.numbers.onStride(stride);
     },
+    task_phase(phase) {
+      this.strip.onPhase(phase);
+    },
+    repetition(repetition) {
+      this.counter.onRepetition(repetition);
+    },
     metrics(metrics) {
       this.numbers.onMetrics(metrics);
     },
   };
+
+  /** Once it is known what is worn and what is to be done: show that, and nothing that cannot be. */
+  arrange({ sensors, task }) {
+    if (this.arranged) return;
+    this.arranged = true;
+    this.strip.node.hidden = task !== "timed_up_and_go";
+    this.counter.node.hidden = task !== "knee_flexion";
+    this.strides.hidden = task === "knee_flexion";
+    const knees = kneesOf(sensors);
+    if (!knees) return;
+    this.knee = new KneePanel(knees);
+    this.curves.prepend(this.knee.node);
+    for (const chart of this.charts) {
+      chart.only(knees);
+      chart.node.hidden = chart.joint !== "knee_flexion";
+    }
+    this.numbers.only(knees);
+    this.showKey(knees);
+  }
+
+  showKey(sides) {
+    const names = sides.map((side) => el("b", { class: side }, side === "left" ? "L left" : "R right"));
+    fill(this.key, ...names, el("span", {}, "grey: not known now"), el("span", {}, "pale: not measured"));
+  }
 
   heard(age_s) {
     this.age = age_s;
@@ -179,6 +218,7 @@ export class LiveView {
       message: this.message,
       sensors: this.sensors,
       segments: this.segments,
+      misplaced: this.misplaced,
       silent,
       heard: this.open && (this.status?.connected ?? false),
     });
@@ -188,26 +228,10 @@ export class LiveView {
     const stale = age_s === null || age_s > STALE_S;
     this.skeleton.setStale(stale);
     for (const chart of this.charts) chart.node.classList.toggle("stale", stale);
-    this.sensorList.classList.toggle("stale", stale);
+    this.sensorList.tick(stale);
     this.numbers.tick(stale);
-  }
-
-  showSensors() {
-    const text = this.sensors.map((each) => each.sensor + each.state).join();
-    if (text === this.sensorText) return;
-    this.sensorText = text;
-    fill(
-      this.sensorList,
-      ...this.sensors.map((each) => {
-        const { word, tone } = SENSOR_WORDS[each.state];
-        return el(
-          "li",
-          {},
-          el("span", {}, segmentName(this.segments[each.sensor] ?? each.sensor)),
-          el("span", { class: "chip small", "data-tone": tone }, word),
-        );
-      }),
-    );
+    this.knee?.tick(stale);
+    this.strip.node.classList.toggle("stale", stale);
   }
 
   advise(text) {
@@ -215,57 +239,21 @@ export class LiveView {
     this.advice.hidden = text === "";
   }
 
-  /** The last seconds on this screen were standing. Whether they were is answered by the next skeletons' notice. */
-  async mark() {
-    this.markButton.disabled = true;
-    try {
-      await post(`/sessions/${this.session.id}/marks`, { last_s: Number(this.markLength.value), at_s: this.atS ?? null });
-    } catch (problem) {
-      this.advise(problem.message);
-    } finally {
-      this.markButton.disabled = false;
-    }
-  }
-
-  async stop() {
-    this.stopButton.disabled = true;
-    try {
-      await post(`/sessions/${this.session.id}/stop`);
-      say(this.stopButton, "Stopping …");
-    } catch (problem) {
-      this.stopButton.disabled = false;
-      this.advise(problem.message);
-    }
-  }
-
   dispose() {
     clearInterval(this.timer);
     this.socket.close();
     this.skeleton.dispose();
-    for (const chart of this.charts) chart.rolling.dispose();
+    for (const chart of this.charts) chart.dispose();
   }
 }
 
-function chartPanel({ joint, title, range }) {
-  const now = { left: el("b", { class: "left" }), right: el("b", { class: "right" }) };
-  const host = el("div", { class: "chart" });
-  const node = el(
-    "section",
-    { class: "panel chart-panel", "aria-label": title },
-    el("div", { class: "panel-head" }, el("h2", {}, title), el("span", { class: "spring" }), now.left, now.right),
-    host,
+/** Angle of each knee that is known, with one standard deviation; rad. */
+function kneeAngles(pose) {
+  const known = SIDES.filter((side) => pose.angles[`knee_flexion_${side}`] !== undefined);
+  return Object.fromEntries(
+    known.map((side) => {
+      const name = `knee_flexion_${side}`;
+      return [side, { value: pose.angles[name], std: pose.angles_std[name] ?? 0 }];
+    }),
   );
-  return {
-    node,
-    start() {
-      this.rolling = new RollingChart(host, joint, range);
-    },
-    add(pose, trail) {
-      this.rolling.add([...trail, pose]);
-      for (const side of ["left", "right"]) {
-        const value = degrees(pose.angles[`${joint}_${side}`]);
-        say(now[side], `${side === "left" ? "L" : "R"} ${number(value, 0)}${value === null ? "" : "°"}`);
-      }
-    },
-  };
 }

@@ -9,6 +9,14 @@ export const INK = "#1C2B33";
 export const SOFT_INK = "#51626C";
 export const GRID = "#E6EBED";
 export const PELVIS = "#44606E";
+/** Grounds for the parts of a timed test, under ink; each part also bears its name. */
+export const PHASE_COLOURS = {
+  sit_to_stand: "#D5E3F3",
+  walk_out: "#DDEEDF",
+  turn: "#FBEBC8",
+  walk_back: "#DDEEDF",
+  turn_to_sit: "#E6DDF0",
+};
 export const GHOST = "#DDE4E7";
 
 /** `#rrggbb` with an alpha for bands. */

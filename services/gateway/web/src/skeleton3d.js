@@ -1,70 +1,34 @@
-// The skeleton in space. Side view to begin with; drag to look from elsewhere.
+// The figure in space. Side view to begin with; drag to look from elsewhere.
 import {
   AmbientLight,
-  CanvasTexture,
   CircleGeometry,
   CylinderGeometry,
   DirectionalLight,
   Group,
   Mesh,
   MeshBasicMaterial,
-  MeshStandardMaterial,
   PerspectiveCamera,
   PolarGridHelper,
-  SRGBColorSpace,
   Scene,
   SphereGeometry,
-  Sprite,
-  SpriteMaterial,
   Vector3,
   WebGLRenderer,
 } from "three";
 import { OrbitControls } from "three/examples/jsm/controls/OrbitControls.js";
 
-import { Stage, SIDES, between } from "./figure.js";
-import { GHOST, INVALID, PELVIS, SIDE_COLOUR } from "./palette.js";
-
-// Radii in m at the upper and lower end. `bone` names the segment whose validity counts; null is not measured.
-const BONES = [
-  ...SIDES.flatMap((side) => [
-    {
-      from: `hip_${side}`,
-      to: `knee_${side}`,
-      radii: [0.058, 0.042],
-      bone: `thigh_${side}`,
-      colour: SIDE_COLOUR[side],
-    },
-    {
-      from: `knee_${side}`,
-      to: `ankle_${side}`,
-      radii: [0.044, 0.026],
-      bone: `shank_${side}`,
-      colour: SIDE_COLOUR[side],
-    },
-    { from: `ankle_${side}`, to: `toe_${side}`, radii: [0.026, 0.02], bone: null, colour: GHOST },
-    { from: "pelvis_top", to: `hip_${side}`, radii: [0.048, 0.048], bone: "pelvis", colour: PELVIS },
-  ]),
-  { from: "hip_left", to: "hip_right", radii: [0.048, 0.048], bone: "pelvis", colour: PELVIS },
-  { from: "neck", to: "pelvis_top", radii: [0.085, 0.06], bone: null, colour: GHOST },
-];
-const JOINTS = [
-  ...SIDES.flatMap((side) => [
-    { at: `hip_${side}`, radius: 0.058, bone: `thigh_${side}`, colour: SIDE_COLOUR[side] },
-    { at: `knee_${side}`, radius: 0.0445, bone: `shank_${side}`, colour: SIDE_COLOUR[side] },
-    { at: `ankle_${side}`, radius: 0.027, bone: `shank_${side}`, colour: SIDE_COLOUR[side] },
-    { at: `toe_${side}`, radius: 0.02, bone: null, colour: GHOST },
-  ]),
-  { at: "pelvis_top", radius: 0.049, bone: "pelvis", colour: PELVIS },
-  { at: "neck", radius: 0.085, bone: null, colour: GHOST },
-];
-const HEAD = { above_neck_m: 0.2, radius: 0.095 };
+import { KneeLabels } from "./knee_labels.js";
+import { SIDES, between, kneeFan } from "./figure.js";
+import { GHOST, INVALID, SIDE_COLOUR } from "./palette.js";
+import { BONES, Fan, HEAD, JOINTS, Seat, letter, solid, span } from "./solids.js";
+import { Stage } from "./stage.js";
 
 const DIRECTIONS = { side: [0, 0.07, 1], front: [1, 0.07, 0], back: [-1, 0.07, 0] };
-const LOOK_AT = new Vector3(0, 0.8, 0);
 const VIEW_ANGLE_DEG = 30;
-const SHOWN_HEIGHT_M = 1.94;
-const SHOWN_WIDTH_M = 1.3;
-const UP = new Vector3(0, 1, 0);
+/** What fits into the picture: a whole body, or legs alone, which need more width to be stretched out in sitting. m */
+const FRAMES = {
+  body: { height: 1.94, width: 1.3, middle: 0.8, seatedWidth: 1.3 },
+  legs: { height: 1.14, width: 0.84, middle: 0.45, seatedWidth: 1.28 },
+};
 const FRAME_S = 0.05;
 
 export class Skeleton3d {
@@ -73,11 +37,14 @@ export class Skeleton3d {
     this.renderer = new WebGLRenderer({ antialias: true, alpha: true });
     this.renderer.setPixelRatio(Math.min(window.devicePixelRatio, 2));
     host.append(this.renderer.domElement);
+    this.labels = new KneeLabels(host);
     this.scene = new Scene();
     this.body = new Group();
     this.camera = new PerspectiveCamera(VIEW_ANGLE_DEG, 1, 0.1, 30);
     this.controls = new OrbitControls(this.camera, this.renderer.domElement);
     this.stage = new Stage();
+    this.frameOf = FRAMES.body;
+    this.view = "side";
     this.furnish();
     this.buildBody();
     this.controls.addEventListener("change", () => this.wake());
@@ -90,13 +57,15 @@ export class Skeleton3d {
     sun.position.set(2, 5, 4);
     this.scene.add(new AmbientLight(0xffffff, 1.5), sun, this.body);
     const grid = new PolarGridHelper(1.5, 12, 5, 72, 0xd5dde0, 0xd5dde0);
-    this.shadow = new Mesh(
+    const shadow = new Mesh(
       new CircleGeometry(0.26, 40),
       new MeshBasicMaterial({ color: 0x1c2b33, transparent: true, opacity: 0.1, depthWrite: false }),
     );
-    this.shadow.rotation.x = -Math.PI / 2;
-    this.shadow.position.y = 0.002;
-    this.scene.add(grid, this.shadow);
+    shadow.rotation.x = -Math.PI / 2;
+    shadow.position.y = 0.002;
+    this.seat = new Seat();
+    this.seat.mesh.visible = false;
+    this.scene.add(grid, shadow, this.seat.mesh);
     this.controls.enablePan = false;
     this.controls.minDistance = 1.6;
     this.controls.maxDistance = 8;
@@ -106,47 +75,63 @@ export class Skeleton3d {
   buildBody() {
     this.bones = BONES.map((bone) => ({
       ...bone,
-      mesh: this.solid(new CylinderGeometry(bone.radii[1], bone.radii[0], 1, 24, 1, true), bone),
+      mesh: solid(new CylinderGeometry(bone.radii[1], bone.radii[0], 1, 24, 1, true), bone),
     }));
     this.joints = JOINTS.map((joint) => ({
       ...joint,
-      mesh: this.solid(new SphereGeometry(joint.radius, 24, 18), joint),
+      mesh: solid(new SphereGeometry(joint.radius, 24, 18), joint),
     }));
-    this.head = this.solid(new SphereGeometry(HEAD.radius, 28, 20), { bone: null, colour: GHOST });
-    this.letters = SIDES.map((side) => {
-      const sprite = letter(side === "left" ? "L" : "R", SIDE_COLOUR[side]);
-      this.body.add(sprite);
-      return { side, sprite };
-    });
+    this.head = solid(new SphereGeometry(HEAD.radius, 28, 20), { colour: GHOST });
+    this.letters = SIDES.map((side) => ({ side, sprite: letter(side === "left" ? "L" : "R", SIDE_COLOUR[side]) }));
+    this.fans = SIDES.map((side) => ({ side, fan: new Fan(SIDE_COLOUR[side]) }));
+    this.body.add(
+      ...[...this.bones, ...this.joints].map(({ mesh }) => mesh),
+      this.head,
+      ...this.letters.map(({ sprite }) => sprite),
+      ...this.fans.flatMap(({ fan }) => fan.meshes),
+    );
     this.body.visible = false;
-  }
-
-  solid(geometry, { bone, colour }) {
-    const material = new MeshStandardMaterial({ color: colour, roughness: 0.6 });
-    const mesh = new Mesh(geometry, material);
-    this.body.add(mesh);
-    return mesh;
   }
 
   /** Side, front or back view. */
   look(from) {
-    const height = Math.max(SHOWN_HEIGHT_M, SHOWN_WIDTH_M / this.camera.aspect);
-    const distance = height / 2 / Math.tan((VIEW_ANGLE_DEG * Math.PI) / 360);
+    this.view = from;
+    const { middle } = this.frameOf;
+    const shown = this.shownHeight(this.frameOf.width);
+    const distance = shown / 2 / Math.tan((VIEW_ANGLE_DEG * Math.PI) / 360);
+    const target = new Vector3(0, middle, 0);
     this.camera.position
       .set(...DIRECTIONS[from])
       .normalize()
       .multiplyScalar(distance)
-      .add(LOOK_AT);
-    this.controls.target.copy(LOOK_AT);
+      .add(target);
+    this.controls.target.copy(target);
     this.controls.update();
     this.wake();
   }
 
-  /** The newest figure; drawn over the next frame's time from where the last one was. */
-  show(figure) {
+  shownHeight(width) {
+    return Math.max(this.frameOf.height, width / this.camera.aspect);
+  }
+
+  zoom() {
+    const { width, seatedWidth } = this.frameOf;
+    const seated = this.shownHeight(width) / this.shownHeight(seatedWidth);
+    this.camera.zoom = 1 + (seated - 1) * this.stage.sitting;
+    this.camera.updateProjectionMatrix();
+  }
+
+  /** The newest figure; drawn over the next frame's time from where the last one was. `angles` are of its knees, rad. */
+  show(figure, angles = {}) {
     const now = performance.now() / 1000;
+    const frame = figure.whole ? FRAMES.body : FRAMES.legs;
+    if (frame !== this.frameOf) {
+      this.frameOf = frame;
+      this.look(this.view);
+    }
     this.older = this.newer ? this.current(now) : figure;
     this.newer = figure;
+    this.angles = angles;
     this.since = now;
     this.body.visible = true;
     this.wake();
@@ -171,6 +156,7 @@ export class Skeleton3d {
     this.renderer.dispose();
     this.renderer.forceContextLoss();
     this.renderer.domElement.remove();
+    this.labels.dispose();
   }
 
   current(now) {
@@ -184,30 +170,53 @@ export class Skeleton3d {
   draw() {
     this.frame = undefined;
     const now = performance.now() / 1000;
-    if (this.newer) {
-      const figure = this.current(now);
+    const figure = this.newer && this.current(now);
+    if (figure) {
       this.stage.follow(figure, Math.min(0.1, now - (this.drawn ?? now)));
       this.place(figure);
+      this.zoom();
       if (now - this.since < FRAME_S) this.wake();
     }
     this.drawn = now;
     this.renderer.render(this.scene, this.camera);
+    if (figure) this.labels.show(figure, this.angles, (point) => this.onScreen(point));
   }
 
-  place({ points, valid }) {
+  place(figure) {
+    const { points, valid } = figure;
     // The body is turned back by the slow heading, so that "side" stays side when the patient turns round.
     this.body.rotation.y = -this.stage.heading;
-    this.body.position.y = 0.05 - this.stage.ground;
-    for (const bone of this.bones) span(bone.mesh, points[bone.from], points[bone.to]);
-    for (const joint of this.joints) joint.mesh.position.fromArray(points[joint.at]);
+    this.body.position.set(-this.stage.centre, 0.05 - this.stage.ground, 0);
+    this.seat.place(this.stage.seatHeight(figure), -this.stage.centre);
+    for (const { mesh, from, to } of this.bones) {
+      mesh.visible = from in points && to in points;
+      if (mesh.visible) span(mesh, points[from], points[to]);
+    }
+    for (const { mesh, at } of this.joints) {
+      mesh.visible = at in points;
+      if (mesh.visible) mesh.position.fromArray(points[at]);
+    }
     for (const { bone, mesh, colour } of [...this.bones, ...this.joints]) {
       if (bone !== null) mesh.material.color.set(valid[bone] ? colour : INVALID);
     }
-    this.head.position.fromArray(points.neck).y += HEAD.above_neck_m;
+    this.head.visible = "neck" in points;
+    if (this.head.visible) this.head.position.fromArray(points.neck).y += HEAD.above_neck_m;
     for (const { side, sprite } of this.letters) {
+      sprite.visible = figure.sides.includes(side);
+      if (!sprite.visible) continue;
       const [x, y, z] = points[`toe_${side}`];
       sprite.position.set(x + 0.08, y + 0.03, z);
     }
+    for (const { side, fan } of this.fans) {
+      const angle = figure.whole ? undefined : this.angles[side];
+      fan.place(points[`knee_${side}`], angle ? kneeFan(figure, side, angle.std) : null);
+    }
+  }
+
+  /** Place of a point of the body on the screen, in px from the upper left corner. */
+  onScreen(point) {
+    const place = new Vector3().fromArray(point).applyMatrix4(this.body.matrixWorld).project(this.camera);
+    return [((place.x + 1) / 2) * this.host.clientWidth, ((1 - place.y) / 2) * this.host.clientHeight];
   }
 
   resize() {
@@ -216,38 +225,10 @@ export class Skeleton3d {
     this.renderer.setSize(width, height);
     this.camera.aspect = width / height;
     this.camera.updateProjectionMatrix();
-    if (!this.framed) this.look("side");
+    if (!this.framed) this.look(this.view);
     this.framed = true;
     this.wake();
   }
-}
-
-const a = new Vector3();
-const b = new Vector3();
-
-function span(mesh, from, to) {
-  a.fromArray(from);
-  b.fromArray(to);
-  mesh.position.copy(a).lerp(b, 0.5);
-  const length = a.distanceTo(b);
-  mesh.scale.set(1, Math.max(length, 1e-3), 1);
-  mesh.quaternion.setFromUnitVectors(UP, b.sub(a).normalize());
-}
-
-function letter(text, colour) {
-  const canvas = document.createElement("canvas");
-  canvas.width = canvas.height = 64;
-  const pen = canvas.getContext("2d");
-  pen.font = "700 46px system-ui, sans-serif";
-  pen.textAlign = "center";
-  pen.textBaseline = "middle";
-  pen.fillStyle = colour;
-  pen.fillText(text, 32, 34);
-  const map = new CanvasTexture(canvas);
-  map.colorSpace = SRGBColorSpace;
-  const sprite = new Sprite(new SpriteMaterial({ map, depthTest: false, toneMapped: false }));
-  sprite.scale.setScalar(0.11);
-  return sprite;
 }
 
 /** Whether this browser can draw in space. */

@@ -1,6 +1,7 @@
 // Start a session: what, how fast, by which estimator, for whom.
 import { get, post } from "./api.js";
 import { el, fill } from "./dom.js";
+import { TASKS } from "./words.js";
 
 const SPEEDS = [
   ["1", "Real time"],
@@ -13,12 +14,30 @@ const PATHS = [
   ["turning", "Free, with turns"],
   ["straight", "Straight: treadmill, in place, corridor"],
 ];
-const KINDS = { recording: "Recorded walks", synthetic: "Simulated walkers" };
+const KINDS = { recording: "Recorded", synthetic: "Simulated" };
+const WORN = { lower_body: "Pelvis and both legs", knee: "Single knee" };
+const TIMED = "timed_up_and_go";
+const WALKWAY_M = 3;
 
 export class StartDialog {
   constructor({ onStarted }) {
     this.onStarted = onStarted;
-    this.source = el("select", { id: "source", required: true });
+    this.source = el("select", { id: "source", required: true, onchange: () => this.fit() });
+    this.task = el(
+      "select",
+      { id: "task", onchange: () => this.fit() },
+      el("option", { value: "" }, "As the source says"),
+      ...Object.entries(TASKS).map(([task, name]) => el("option", { value: task }, name)),
+    );
+    this.walkway = el("input", {
+      id: "walkway",
+      type: "number",
+      min: 0.5,
+      max: 100,
+      step: 0.1,
+      placeholder: `as the source says, else ${WALKWAY_M} m`,
+    });
+    this.walkwayField = field("Walkway, m from the chair to the turn", this.walkway);
     this.speed = el("select", { id: "speed" }, ...SPEEDS.map(([value, name]) => el("option", { value }, name)));
     this.estimator = el("select", { id: "estimator" });
     this.path = el("select", { id: "walk-path" }, ...PATHS.map(([value, name]) => el("option", { value }, name)));
@@ -30,6 +49,8 @@ export class StartDialog {
       { method: "dialog", onsubmit: (event) => this.submit(event) },
       el("h2", {}, "Start a session"),
       field("Source", this.source),
+      field("Task", this.task),
+      this.walkwayField,
       field("Speed", this.speed),
       field("Estimator", this.estimator),
       field("Path", this.path),
@@ -72,17 +93,36 @@ export class StartDialog {
           el("optgroup", { label }, ...some.map((source) => el("option", { value: source.id }, source.title))),
         ),
     );
-    fill(
-      this.estimator,
-      ...estimators.map((each) =>
-        el("option", { value: each.name }, each.default ? `${each.name} (default)` : each.name),
-      ),
-    );
+    this.worn = Object.fromEntries(sources.map((source) => [source.id, source.worn]));
+    this.tasks = Object.fromEntries(sources.map((source) => [source.id, source.task]));
+    this.estimators = estimators;
     fill(
       this.patient,
       el("option", { value: "" }, "assign later"),
       ...patients.map((patient) => el("option", { value: patient.code }, patient.code)),
     );
+    this.fit();
+  }
+
+  /** Offer what fits the source: estimators for what is worn, where that is known, and a walkway for a timed test. */
+  fit() {
+    const worn = this.worn?.[this.source.value] ?? null;
+    const chosen = this.estimator.value;
+    const groups = Object.keys(WORN).filter((each) => worn === null || each === worn);
+    fill(
+      this.estimator,
+      el("option", { value: "" }, "As the source says"),
+      ...groups.map((group) => this.estimatorGroup(group)),
+    );
+    if ([...this.estimator.options].some((option) => option.value === chosen)) this.estimator.value = chosen;
+    const task = this.task.value || this.tasks?.[this.source.value];
+    this.walkwayField.hidden = task !== TIMED;
+  }
+
+  estimatorGroup(group) {
+    const fitting = (this.estimators ?? []).filter((each) => each.worn === group);
+    const options = fitting.map((each) => el("option", { value: each.name, title: each.meaning }, each.name));
+    return el("optgroup", { label: WORN[group] }, ...options);
   }
 
   async submit(event) {
@@ -95,6 +135,8 @@ export class StartDialog {
         speed: this.speed.value === "max" ? null : Number(this.speed.value),
         estimator: this.estimator.value || null,
         walk_path: this.path.value || null,
+        task: this.task.value || null,
+        walkway_m: this.walkwayField.hidden || this.walkway.value === "" ? null : Number(this.walkway.value),
         patient: this.patient.value || null,
       });
       this.node.close();

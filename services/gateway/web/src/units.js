@@ -12,13 +12,16 @@ const SHOWN = {
   "m/s": { factor: 1, unit: "m/s", digits: 2 },
   s: { factor: 1, unit: "s", digits: 2 },
   "steps/min": { factor: 1, unit: "steps/min", digits: 0 },
+  "rad/s": { factor: DEGREES, unit: "°/s", digits: 0 },
+  "rad/repetition": { factor: DEGREES, unit: "° each time", digits: 2 },
+  "repetitions/min": { factor: 1, unit: "/min", digits: 1 },
 };
 
 /** How a metric of that unit is shown: factor, unit, digits. Shares of one become per cent. */
 export function shown(unit, name) {
   if (name.endsWith("_fraction")) return PERCENT;
   if (name.endsWith("_cv") || name.endsWith("_timing")) return { ...PERCENT, digits: 1 };
-  if (name.startsWith("strides_")) return { factor: 1, unit: "", digits: 0 };
+  if (name.startsWith("strides_") || name.startsWith("repetitions_")) return { factor: 1, unit: "", digits: 0 };
   return SHOWN[unit] ?? { factor: 1, unit: unit === "1" ? "" : unit, digits: 2 };
 }
 

@@ -32,10 +32,21 @@ const METRICS = {
   rhythm_shape_previous_visit: "Difference in shape from the previous visit",
   rhythm_distance_exemplar: "Distance from the exemplar",
   rhythm_shape_exemplar: "Difference in shape from the exemplar",
+  repetitions_counted: "Repetitions counted",
+  repetitions_rejected: "Repetitions left out",
+  repetition_range: "Range",
+  repetition_flexion_largest: "Peak flexion",
+  repetition_flexion_smallest: "Least flexion (extension deficit)",
+  repetition_time_flexing: "Time flexing",
+  repetition_time_extending: "Time extending",
+  repetition_peak_velocity: "Peak velocity",
+  repetition_range_slope: "Trend of the range",
+  repetition_tempo: "Tempo",
   strides_counted: "Strides counted",
   strides_turning: "Strides while turning",
   strides_rejected: "Strides left out",
 };
+const TIMED = "tug_";
 const RATIO = "_ratio_larger_to_smaller";
 const VARIATION = "_cv";
 const DEVIATION = "_sd";
@@ -45,12 +56,17 @@ const HEADLINES = ["walking_speed", "cadence", "stride_length", "stride_time"];
 export function metricName(name) {
   for (const suffix of [RATIO, VARIATION, DEVIATION])
     if (name.endsWith(suffix)) return metricName(name.slice(0, -suffix.length));
+  if (name.startsWith(TIMED)) return timedName(name.slice(TIMED.length));
   return METRICS[name] ?? jointName(name)[0];
 }
+
+const timedName = (part) => PHASES[part.replace(/_(time|duration)$/, "")] ?? jointName(part)[0];
 
 /** Where a metric belongs in a report; null for those that the spread beside the mean says already. */
 export function metricGroup({ name, side }) {
   if (name.endsWith(DEVIATION)) return null;
+  if (name.startsWith(TIMED)) return side === null ? "headlines" : "sides";
+  if (name.startsWith("repetition")) return name.endsWith(VARIATION) ? null : "exercise";
   if (name.endsWith(RATIO)) return "symmetry";
   if (name.startsWith("rhythm_side_")) return "legs";
   if (name.endsWith(VARIATION)) return side === null ? "variability" : null;
@@ -60,6 +76,19 @@ export function metricGroup({ name, side }) {
 
 /** Order of the headlines; unknown ones come last. */
 export const headlineRank = ({ name }) => (HEADLINES.includes(name) ? HEADLINES.indexOf(name) : HEADLINES.length);
+
+/** What the numbers of a report rest on, and what zero means. */
+export function qualityText(metrics, datum) {
+  const count = (name) =>
+    metrics.filter((metric) => metric.name === name).reduce((sum, metric) => sum + (metric.value ?? 0), 0);
+  const told = (what) => {
+    const [counted, left_out] = [count(`${what}_counted`), count(`${what}_rejected`)];
+    if (counted + left_out === 0) return null;
+    return left_out > 0 ? `${counted} ${what} count, ${left_out} left out` : `${counted} ${what} count`;
+  };
+  const facts = [told("strides"), told("repetitions"), datum ? `zero is ${datum}` : null].filter(Boolean);
+  return facts.length > 0 ? `Quality: ${facts.join("  ·  ")}` : "";
+}
 
 /** What a sensor's state means to a therapist. */
 export const SENSOR_WORDS = {
@@ -71,6 +100,51 @@ export const SENSOR_WORDS = {
   unused: { word: "Not used", tone: "done" },
 };
 
+/** What a person is asked to do. */
+export const TASKS = { walk: "Walk", timed_up_and_go: "Timed up and go", knee_flexion: "Knee bending" };
+
+/** The parts of a timed up and go, in order. */
+export const PHASES = {
+  sit_to_stand: "Stand up",
+  walk_out: "Walk out",
+  turn: "Turn",
+  walk_back: "Walk back",
+  turn_to_sit: "Turn and sit",
+};
+
+const MISPLACED = {
+  other_leg: {
+    word: () => "Sides may be swapped",
+    text: (side) => `Sides may be swapped: the sensors of the ${side} leg seem to be on the ${OTHER[side]} leg.`,
+  },
+  swapped: {
+    word: () => "Thigh and shank may be swapped",
+    text: (side) => `Thigh and shank sensor of the ${side} leg seem to be swapped.`,
+  },
+  thigh_upside_down: {
+    word: (side) => `${SIDES[side]} thigh sensor upside down`,
+    text: (side) => `The ${side} thigh sensor seems to be worn upside down.`,
+  },
+  shank_upside_down: {
+    word: (side) => `${SIDES[side]} shank sensor upside down`,
+    text: (side) => `The ${side} shank sensor seems to be worn upside down.`,
+  },
+};
+const OTHER = { left: "right", right: "left" };
+
+/** All that is worn otherwise than declared, as sentences; empty when nothing is. */
+export function misplacedText(misplaced) {
+  return foundMisplaced(misplaced)
+    .map(({ side, what }) => MISPLACED[what].text(side))
+    .join(" ");
+}
+
+function foundMisplaced(misplaced) {
+  return Object.entries(misplaced ?? {}).flatMap(([side, found]) =>
+    found.filter((what) => what in MISPLACED).map((what) => ({ side, what })),
+  );
+}
+
 const ORDER = { lost: 0, check: 1, wait: 2, good: 3, done: 4 };
 
 /** A number older than this is grey. */
@@ -79,7 +153,7 @@ export const STALE_S = 1;
 /**
  * The one word for a running session, worst thing first.
  * @param {{age_s: number|null, phase: string|null, message: string|null, sensors: {sensor: string, state: string}[],
- *   segments: Record<string, string>, silent: string[], heard: boolean}} now
+ *   segments: Record<string, string>, misplaced: Record<string, string[]>, silent: string[], heard: boolean}} now
  * @returns {{word: string, tone: "lost"|"check"|"wait"|"good", light: string}}
  */
 export function stateOf(now) {
@@ -91,7 +165,7 @@ function calibratingStep(message) {
   return message ? message.charAt(0).toLowerCase() + message.slice(1) : "stand still";
 }
 
-function judge({ age_s, phase, message, sensors, segments, silent, heard }) {
+function judge({ age_s, phase, message, sensors, segments, misplaced, silent, heard }) {
   const estimating = !silent.includes("estimation");
   if (age_s !== null && age_s > STALE_S) {
     if (heard && !estimating && !silent.includes("archive")) {
@@ -111,6 +185,8 @@ function judge({ age_s, phase, message, sensors, segments, silent, heard }) {
       word: `Check ${segmentName(segments[doubtful.sensor] ?? doubtful.sensor).toLowerCase()} sensor`,
       tone: "check",
     };
+  const [worst] = foundMisplaced(misplaced);
+  if (worst) return { word: MISPLACED[worst.what].word(worst.side), tone: "check" };
   if (phase !== "estimating") return { word: `Calibrating - ${calibratingStep(message)}`, tone: "wait" };
   return { word: "Live", tone: "good" };
 }
