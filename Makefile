@@ -3,6 +3,7 @@ SHELL := /bin/sh
 PYTHON ?= python3
 VENV := .venv
 BIN := $(VENV)/bin
+WORKERS ?= 2
 WEB := services/gateway/web
 DIST := services/gateway/static/dist
 
@@ -36,8 +37,8 @@ web: $(DIST)/.built ## build the web page
 demo: install ## two synthetic patients (and a recorded walk where there is one), live in the browser
 	$(BIN)/ambula up --demo
 
-test: install ## all tests
-	$(BIN)/python -m pytest
+test: install ## all tests, in two processes (WORKERS=1 for one)
+	$(BIN)/python -m pytest --numprocesses $(WORKERS) --dist loadgroup --no-loadscope-reorder
 
 check: install ## lint, types, import contracts
 	$(BIN)/ruff check .
