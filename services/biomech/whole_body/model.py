@@ -165,6 +165,10 @@ class WholeBodyModel:
         return H.reshape(CENTRES, 3, KINEMATIC)[:, :, : COORDINATES + LENGTHS]
 
 
+MODEL = WholeBodyModel()
+"""The body as people are built on average."""
+
+
 def _offset_table(offsets: list[Offset]) -> tuple[NDArray[np.int64], NDArray[np.int64], Array]:
     length = [-1 if offset.length is None else LENGTH_NAMES.index(offset.length) for offset in offsets]
     return (

@@ -50,6 +50,72 @@ class Pose(NamedTuple):
     centre: Array  # (15, 3) m
 
 
+class Columns(NamedTuple):
+    """Which columns of the Jacobian move a centre."""
+
+    table: Indices  # (15, deepest), the three translations first
+    used: Indices  # (15,) how many of the table's row
+
+
+class Noise(NamedTuple):
+    """What the camera is believed, as variances."""
+
+    variance: Array  # (15,) m^2 per axis of a tracked centre
+    along: Array  # (15,) more along the bone that leads to the centre, in squares of that bone
+    inferred: float  # factor on both of an inferred centre
+    gate: float  # squared innovation, in variances, from which a centre is believed less; 0: never
+
+
+class Priors(NamedTuple):
+    """Soft pseudo-measurements of single angles at every frame."""
+
+    column: Indices  # (p,) column of the state
+    value: Array  # (p,) rad
+    variance: Array  # (p,) rad^2
+
+
+class Update(NamedTuple):
+    """Scratch of the measurement update, and what it found."""
+
+    pose: Pose
+    H: Array  # (45, 40) Jacobian of all centres
+    rows: Array  # (45, 40) of the centres in use, one after another
+    used: Indices  # (15,) centres in use, the first `in_use[0]`
+    in_use: Indices  # (1,) how many
+    innovation: Array  # (15, 3) m
+    distance: Array  # (15,) squared innovation in variances, 3 expected; of a centre in use
+    W: Array  # (64, M)
+    S: Array  # (64, 64) innovation covariance, after the update its Cholesky factor
+    y: Array  # (64,)
+    pivot: Array  # (64,) reciprocal diagonal of the factor
+    dx: Array  # (M,)
+    evidence: Array  # (2,) squared innovations in variances, and log determinant, of the centres alone
+
+
+class Bounds(NamedTuple):
+    """low <= x[column] <= high, and scratch of the projection."""
+
+    column: Indices  # (b,)
+    low: Array  # (b,)
+    high: Array  # (b,)
+    active: Indices  # (b,) place in `column`
+    sign: Array  # (b,) +1 at the high bound
+    multiplier: Array  # (b,)
+    factor: Array  # (b, b)
+    trial: Array  # (b,)
+
+
+def empty_update(width: int) -> Update:
+    """Room for an update with covariance rows of `width`."""
+    rows = 3 * CENTRES + PRIORS
+    rows += -rows % 8
+    return Update(
+        empty_pose(), np.zeros((BIASES, KINEMATIC)), np.zeros((BIASES, KINEMATIC)),
+        np.zeros(CENTRES, dtype=np.int64), np.zeros(1, dtype=np.int64), np.zeros((CENTRES, 3)), np.zeros(CENTRES),
+        np.zeros((rows, width)), np.zeros((rows, rows)), np.zeros(rows), np.zeros(rows), np.zeros(width), np.zeros(2),
+    )  # fmt: skip
+
+
 def empty_pose() -> Pose:
     """Room for a pose."""
     return Pose(np.zeros((ANGLES, 3, 3)), np.zeros((ANGLES, 3)), np.zeros((ANGLES, 3)), np.zeros((CENTRES, 3)))

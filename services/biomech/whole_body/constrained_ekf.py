@@ -1,0 +1,176 @@
+"""Constrained extended Kalman filter of the whole body on the joint centres of a depth camera (Colombel eq. 1-5).
+
+Ours differs from the printed one where that cannot be right: the updated estimate is brought within bounds, not the
+predicted one; in the metric of the covariance; and the covariance stays that of the optimal gain (Joseph's form), so
+it remains symmetric and positive definite. `colombel.py` holds the printed form.
+"""
+
+from dataclasses import dataclass, field
+
+import numpy as np
+from numpy.typing import NDArray
+
+from services.biomech.whole_body.kernels.frame import advance
+from services.biomech.whole_body.kernels.tables import (
+    BIASES,
+    CENTRES,
+    COORDINATES,
+    SEEN,
+    Bounds,
+    Columns,
+    Noise,
+    Priors,
+    empty_update,
+)
+from services.biomech.whole_body.model import MODEL, WholeBodyModel
+from services.biomech.whole_body.parameters import (
+    LENGTH_RANGE,
+    LIMITS_DEG,
+    NOMINAL_DT_S,
+    REST_DEG,
+    CameraNoise,
+    ProcessNoise,
+    SoftPriors,
+    per_angle,
+)
+from services.biomech.whole_body.start import Start
+
+Array = NDArray[np.float64]
+
+LONE_LIMIT = 1e6
+"""A bound that nothing reaches."""
+
+
+@dataclass(frozen=True)
+class FilterSettings:
+    """What the filter believes of camera, movement and person."""
+
+    camera: CameraNoise = field(default_factory=CameraNoise)
+    process: ProcessNoise = field(default_factory=ProcessNoise)
+    priors: SoftPriors = field(default_factory=SoftPriors)
+    constrained: bool = True
+
+
+OURS = FilterSettings()
+
+
+class WholeBodyEkf:
+    """The filter of one person in view. `x` and `P` are its whole state.
+
+    x (n,): 25 coordinates q, 12 lengths, 45 biases if the start has any, 25 velocities, 25 accelerations.
+    """
+
+    def __init__(self, start: Start, settings: FilterSettings = OURS, model: WholeBodyModel = MODEL) -> None:
+        self.settings, self.model, self.start = settings, model, start
+        self.biased = start.bias_std is not None
+        self.velocity = SEEN + (BIASES if self.biased else 0)
+        n = self.velocity + 2 * COORDINATES
+        self.x = np.zeros(n)
+        self._padded = np.zeros((n, n + (-n) % 8))
+        self.P = self._padded[:, :n]
+        self.x[:SEEN] = np.concatenate([start.q, start.lengths])
+        self._start_covariance()
+        camera = settings.camera
+        self._noise = Noise(*camera.per_centre(), camera.inferred, camera.gate)
+        self._bounds = bounds_of(start, constrained=settings.constrained)
+        rest = np.concatenate([np.zeros(3), per_angle(REST_DEG)[:, 0]])
+        columns = settings.priors.columns()
+        self._priors = Priors(columns, rest[columns], settings.priors.variances())
+        self._density = settings.process.densities()
+        self._tree, self._columns = model.tree, Columns(*model.columns)
+        self._update = empty_update(self._padded.shape[1])
+        self.active = 0
+        self.swapped = False
+
+    def _start_covariance(self) -> None:
+        start = self.start
+        velocity, acceleration = start.noise.rate_variances()
+        diagonal = np.zeros(len(self.x))
+        diagonal[:COORDINATES] = start.q_std**2
+        if start.bias_std is not None:
+            diagonal[SEEN : self.velocity] = np.tile(np.square(start.bias_std), CENTRES)
+        diagonal[self.velocity : self.velocity + COORDINATES] = velocity
+        diagonal[self.velocity + COORDINATES :] = acceleration
+        self.P[:] = np.diag(diagonal)
+        self.P[COORDINATES:SEEN, COORDINATES:SEEN] = start.length_covariance
+
+    def advance(self, dt_s: float, centres: Array, state: NDArray[np.int64]) -> None:
+        """Predict over dt_s >= 0 and fuse one frame.
+
+        centres (15, 3) m in world axes, in the order of JointCentre; state (15,) 0 not tracked, 1 inferred, 2 tracked.
+        A centre that is not tracked or not finite has no row. Without any centre it only predicts.
+        """
+        seen = np.where(np.isfinite(centres).all(axis=1), state, 0)
+        camera = self.settings.camera
+        share = NOMINAL_DT_S / max(dt_s, 1e-3)
+        self.swapped, self.active = advance(
+            self.x, self._padded, self.velocity, dt_s, self._density, self.settings.process.held, share,
+            np.where(seen[:, None] > 0, centres, 0.0), seen,
+            camera.swap_scale, camera.swap_most, camera.swap_share,
+            self._tree, self._columns, self._noise, self._priors, self._bounds, self._update,
+        )  # fmt: skip
+
+    @property
+    def q(self) -> Array:
+        """(25,) translations of spine_base, m, and the angles, rad."""
+        return self.x[:COORDINATES]
+
+    @property
+    def angles(self) -> Array:
+        """(22,) rad, in the order of WHOLE_BODY."""
+        return self.x[3:COORDINATES]
+
+    @property
+    def lengths(self) -> Array:
+        """(12,) m."""
+        return self.x[COORDINATES:SEEN]
+
+    @property
+    def rates(self) -> Array:
+        """(22,) rad/s."""
+        return self.x[self.velocity + 3 : self.velocity + COORDINATES]
+
+    def deviations(self) -> Array:
+        """(2, 22) standard deviations of the angles, rad, and their rates, rad/s."""
+        variance = np.diagonal(self.P)
+        first = self.velocity + 3
+        return np.sqrt(np.stack([variance[3:COORDINATES], variance[first : first + COORDINATES - 3]]))
+
+    def distances(self) -> Array:
+        """(15,) squared innovation of each centre of the last frame in variances, 3 expected; 0 without a row."""
+        distances = np.zeros(CENTRES)
+        used = self._update.used[: self._update.in_use[0]]
+        distances[used] = self._update.distance[used]
+        return distances
+
+    def evidence(self) -> tuple[int, float, float]:
+        """Of the last frame's centres: how many rows, their squared innovations in variances, log det of S."""
+        squares, log_determinant = self._update.evidence
+        return 3 * int(self._update.in_use[0]), float(squares), float(log_determinant)
+
+    def settle(self) -> None:
+        """After a time without frames: keep posture, lengths and biases, forget how it moved and how sure it was."""
+        self.x[self.velocity :] = 0.0
+        kept = self.P[COORDINATES : self.velocity, COORDINATES : self.velocity].copy()
+        self._start_covariance()
+        self.P[COORDINATES : self.velocity, COORDINATES : self.velocity] = kept
+
+    def is_sound(self) -> bool:
+        """Finite throughout."""
+        return bool(np.isfinite(self.x).all() and np.isfinite(self._padded).all())
+
+
+def bounds_of(start: Start, *, constrained: bool) -> Bounds:
+    """Limits of the 22 angles and of the 12 lengths, +-20 % of where they started."""
+    low, high = per_angle(LIMITS_DEG).T
+    low, high = low.copy(), high.copy()
+    low[0] += start.q[3]
+    high[0] += start.q[3]
+    low = np.concatenate([low, (1.0 - LENGTH_RANGE) * start.lengths])
+    high = np.concatenate([high, (1.0 + LENGTH_RANGE) * start.lengths])
+    if not constrained:
+        low, high = np.full_like(low, -LONE_LIMIT), np.full_like(high, LONE_LIMIT)
+    b = len(low)
+    column = np.arange(3, 3 + b)
+    scratch = np.zeros(b, dtype=np.int64), np.zeros(b), np.zeros(b), np.zeros((b, b)), np.zeros(b)
+    return Bounds(column, low, high, *scratch)

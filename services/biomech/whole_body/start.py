@@ -1,0 +1,144 @@
+"""Where the filter starts: from a standing, still second, or from a posture fitted to the first frames.
+
+Constant biases of the centres can be told from the posture only where the posture is known: while standing. So a
+start that is not standing has none, and its absolute angles carry the camera's offsets.
+"""
+
+from math import radians
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from schemas.vocabulary import JointCentre
+from services.biomech.whole_body.kernels.tables import COORDINATES
+from services.biomech.whole_body.model import CENTRE_NAMES, MODEL, WholeBodyModel
+from services.biomech.whole_body.parameters import (
+    MEAN_STATURE,
+    REST_DEG,
+    START_NOISE,
+    StartNoise,
+    length_covariance,
+    lengths_of,
+    per_angle,
+)
+
+Array = NDArray[np.float64]
+States = NDArray[np.int64]
+
+PLACE = {centre: i for i, centre in enumerate(CENTRE_NAMES)}
+
+STILL_STD = 0.03
+"""m. Largest robust deviation of a tracked centre, arms apart, in a still second: noise 0.01, wander of a bone."""
+UPRIGHT = radians(25.0)
+"""Largest angle of trunk, thigh and shank against the vertical while standing, camera offsets included."""
+TURNED = radians(30.0)
+"""A heading beyond this is told by the camera; below, facing it is likelier than what 0.17 m of pelvis show."""
+UNKNOWN_STATURE_SPREAD = 0.05
+
+
+class Start(NamedTuple):
+    """Posture and lengths to start from, and how sure they are."""
+
+    q: Array  # (25,) m and rad
+    q_std: Array  # (25,)
+    lengths: Array  # (12,) m
+    length_covariance: Array  # (12, 12) m^2
+    bias_std: tuple[float, float, float] | None  # m; None: no bias states
+    noise: StartNoise
+
+    @property
+    def standing(self) -> bool:
+        """Whether the posture was known, so that absolute angles are free of the camera's offsets."""
+        return self.bias_std is not None
+
+
+def median_centres(centres: Array, state: States) -> Array:
+    """(15, 3) median over frames (t, 15, 3) of what was tracked, or inferred where nothing was; NaN if never seen."""
+    result = np.full(centres.shape[1:], np.nan)
+    for m in range(centres.shape[1]):
+        for wanted in (2, 1):
+            rows = centres[(state[:, m] >= wanted) & np.isfinite(centres[:, m]).all(axis=1), m]
+            if len(rows):
+                result[m] = np.median(rows, axis=0)
+                break
+    return result
+
+
+def is_standing(centres: Array, state: States) -> bool:
+    """Whether frames (t, 15, 3) show someone upright, legs straight below, and still."""
+    middle = median_centres(centres, state)
+    if not np.isfinite(middle).all():
+        return False
+    spread = np.nanmedian(np.abs(np.where(state[:, :, None] == 2, centres, np.nan) - middle), axis=0)
+    body = [PLACE[c] for c in CENTRE_NAMES if not c.startswith(("elbow", "wrist", "ankle"))]
+    if np.nanmax(spread[body]) > STILL_STD:
+        return False
+    bones = [(JointCentre.SPINE_BASE, JointCentre.SPINE_SHOULDER)]
+    for side in ("right", "left"):
+        knee = JointCentre(f"knee_{side}")
+        bones += [(knee, JointCentre(f"hip_{side}")), (JointCentre(f"ankle_{side}"), knee)]
+    return all(_inclination(middle[PLACE[upper]] - middle[PLACE[lower]]) < UPRIGHT for lower, upper in bones)
+
+
+def _inclination(bone: Array) -> float:
+    return float(np.arctan2(np.hypot(bone[0], bone[2]), bone[1]))
+
+
+def heading(middle: Array) -> float:
+    """rad, turned to the left, from shoulders and hips (15, 3)."""
+    line = np.zeros(3)
+    for name in ("shoulder", "hip"):
+        line += middle[PLACE[JointCentre(f"{name}_right")]] - middle[PLACE[JointCentre(f"{name}_left")]]
+    return float(np.arctan2(line[0], line[2]))
+
+
+def measured_lengths(model: WholeBodyModel, centres: Array) -> Array:
+    """(12,) m, from one set of centres (15, 3); NaN where an end is missing."""
+    tree = model.tree
+    total, count = np.zeros(12), np.zeros(12)
+    for m in range(len(CENTRE_NAMES)):
+        length = tree.centre_length[m]
+        if length >= 0 and np.isfinite(centres[[m, tree.before[m]]]).all():
+            total[length] += np.linalg.norm(centres[m] - centres[tree.before[m]])
+            count[length] += abs(tree.centre_share[m])
+    return np.where(count > 0.0, total / np.maximum(count, 1e-9), np.nan)
+
+
+def stature_told_by(lengths: Array) -> float:
+    """m, from measured lengths (12,): the median over those there are; the mean person's without any."""
+    ratios = lengths / lengths_of(1.0)
+    return float(np.nanmedian(ratios)) if np.isfinite(ratios).any() else MEAN_STATURE
+
+
+def standing_start(
+    centres: Array, state: States, stature: float | None, noise: StartNoise = START_NOISE,
+    model: WholeBodyModel = MODEL,
+) -> Start:  # fmt: skip
+    """From a standing, still second of frames (t, 15, 3): the rest posture of people, not what the camera shows."""
+    middle = median_centres(centres, state)
+    rest, spread = per_angle(REST_DEG).T
+    q = np.concatenate([np.zeros(3), rest])
+    turned = heading(middle)
+    if abs(turned) > TURNED:
+        q[3] = turned
+    told = stature is not None
+    lengths = lengths_of(stature if stature is not None else stature_told_by(measured_lengths(model, middle)))
+    q[:3] = np.nanmedian(middle - model.centres(q, lengths), axis=0)
+    spread_of_lengths = noise.length_spread if told else UNKNOWN_STATURE_SPREAD
+    return Start(
+        q, np.concatenate([np.full(3, noise.position_std), spread]), lengths,
+        length_covariance(lengths, spread_of_lengths), noise.bias_std, noise,
+    )  # fmt: skip
+
+
+FITTED_ANGLE_STD = radians(15.0)
+"""rad. A posture fitted to biased centres: 30 mm over a bone of 0.15 to 0.4 m."""
+FITTED_LENGTH_SPREAD = 0.06
+
+
+def fitted_start(q: Array, lengths: Array, noise: StartNoise = START_NOISE) -> Start:
+    """From a posture q (25,) and lengths (12,) that were fitted to the first frames; no bias states."""
+    std = np.full(COORDINATES, FITTED_ANGLE_STD)
+    std[:3] = noise.position_std
+    return Start(q.copy(), std, lengths.copy(), length_covariance(lengths, FITTED_LENGTH_SPREAD), None, noise)
