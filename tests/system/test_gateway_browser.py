@@ -1,114 +1,35 @@
-"""A person at the page: real services, a synthetic walk, a real browser."""
+"""A person at the page: real services, synthetic walks and exercises, a real browser."""
 
 import json
-import os
-import socket
 import time
 import urllib.request
-from dataclasses import dataclass
-from pathlib import Path
 
 import pytest
 from selenium.webdriver import Chrome
 from selenium.webdriver.common.by import By
-from selenium.webdriver.support.ui import Select, WebDriverWait
+from selenium.webdriver.support.ui import Select
 
-from services.bus.settings import BusSettings
 from services.cli import browser as browsers
-from services.cli.supervisor import Supervisor
-from services.gateway.settings import DIST
+from tests.system import pages
+from tests.system.pages import colours, keep, start, text, wait
 
-pytestmark = [
-    pytest.mark.system,
-    pytest.mark.browser,
-    pytest.mark.skipif(browsers.absent() is not None, reason=f"no browser: {browsers.absent()}"),
-    pytest.mark.skipif(not (DIST / "index.html").exists(), reason="the pages are not built: run `make web`"),
-]
+pytestmark = pages.NEEDED
 
-SERVICES = ["archive", "estimation", "segmentation", "metrics", "gateway", "ingest"]
-PATIENCE_S = 90
-
-COLOURS = """
-const done = arguments[arguments.length - 1];
-const picture = new Image();
-picture.onload = () => {
-  const sheet = document.createElement("canvas");
-  sheet.width = picture.width;
-  sheet.height = picture.height;
-  const pen = sheet.getContext("2d");
-  pen.drawImage(picture, 0, 0);
-  const { data } = pen.getImageData(0, 0, sheet.width, sheet.height);
-  const seen = new Set();
-  for (let i = 0; i < data.length; i += 4) seen.add((data[i] << 16) | (data[i + 1] << 8) | data[i + 2]);
-  done(seen.size);
-};
-picture.src = "data:image/png;base64," + arguments[0];
-"""
-
-
-def free_port() -> int:
-    with socket.create_server(("127.0.0.1", 0)) as listener:
-        return listener.getsockname()[1]
+KNEE = "Walk, left knee alone"
+QUICK = "Five times as fast"
 
 
 @pytest.fixture(scope="module")
 def site(tmp_path_factory):
     """The address of a running floor."""
-    port = free_port()
-    environment = {
-        "AMBULA_HTTP_HOST": "127.0.0.1",
-        "AMBULA_HTTP_PORT": str(port),
-        "AMBULA_DATA_DIR": str(tmp_path_factory.mktemp("recordings")),
-        "AMBULA_DATABASE": "",
-    }
-    settings = BusSettings(router=f"tcp/127.0.0.1:{free_port()}")
-    with Supervisor(SERVICES, settings, environment=environment) as supervisor:
-        supervisor.wait_until_ready(timeout_s=180)
-        yield Site(f"http://127.0.0.1:{port}", supervisor)
-
-
-@dataclass
-class Site:
-    url: str
-    supervisor: Supervisor
+    with pages.open_site(tmp_path_factory.mktemp("recordings")) as site:
+        yield site
 
 
 @pytest.fixture
 def page():
     with browsers.open_browser() as page:
         yield page
-
-
-def wait(page: Chrome, condition, what: str):
-    return WebDriverWait(page, PATIENCE_S, poll_frequency=0.2).until(lambda _: condition(), what)
-
-
-def text(page: Chrome, selector: str) -> str:
-    found = page.find_elements(By.CSS_SELECTOR, selector)
-    return found[0].text if found else ""
-
-
-def start(page: Chrome, url: str, kind: str = "Walk, comfortable speed") -> None:
-    """As a person would: the button, a source, Start."""
-    page.get(url)
-    page.find_element(By.ID, "start").click()
-    source = page.find_element(By.ID, "source")
-    wait(page, lambda: kind in source.text, "the sources are offered")
-    Select(source).select_by_visible_text(kind)
-    page.find_element(By.CSS_SELECTOR, "dialog button[type=submit]").click()
-    wait(page, lambda: "#/sessions/" in page.current_url, "the session opens")
-
-
-def keep(page: Chrome, name: str) -> None:
-    """A picture for whoever wants to look: AMBULA_SCREENSHOTS names the folder."""
-    folder = os.environ.get("AMBULA_SCREENSHOTS")
-    if folder:
-        page.save_screenshot(str(Path(folder) / f"{name}.png"))
-
-
-def colours(page: Chrome, selector: str) -> int:
-    picture = page.find_element(By.CSS_SELECTOR, selector).screenshot_as_base64
-    return page.execute_async_script(COLOURS, picture)
 
 
 def numbers(page: Chrome) -> list[str]:
@@ -205,3 +126,74 @@ def test_the_operator_marks_standing_and_is_told_when_it_was_none(site, page):
     keep(page, "mark-refused")
     wait(page, lambda: text(page, ".session-head + .banner") == "", "the notice goes by itself")
     assert browsers.complaints(page) == []
+
+
+def shown(page: Chrome, selector: str) -> list[str]:
+    return [each.text for each in page.find_elements(By.CSS_SELECTOR, selector) if each.is_displayed()]
+
+
+def seen(page: Chrome, selector: str, count: int, what: str) -> None:
+    """Wait until the text of an element has been that many different ones."""
+    texts = set()
+    wait(page, lambda: texts.add(text(page, selector)) or len(texts) >= count, what)
+
+
+def live(page: Chrome) -> bool:
+    return text(page, ".session-head .chip") == "Live"
+
+
+def test_one_knee_is_one_leg_with_its_angle_and_a_report_of_its_own(site):
+    with browsers.open_browser() as page:
+        pages.start(page, site.url, KNEE, speed=QUICK)
+        wait(page, lambda: live(page), "the session is live")
+        seen(page, "output.knee-now.left", 6, "the angle changes")
+        seen(page, ".knee-label b", 3, "the angle beside the leg changes")
+        wait(page, lambda: page.find_element(By.CSS_SELECTOR, ".knee-facts dd").text != "–", "there is a range")
+        assert pages.colours(page, ".stage canvas") > 100, "the leg's canvas is blank"
+        first = page.find_element(By.CSS_SELECTOR, ".stage canvas").screenshot_as_base64
+        wait(
+            page, lambda: page.find_element(By.CSS_SELECTOR, ".stage canvas").screenshot_as_base64 != first, "it moves"
+        )
+        assert shown(page, ".curves h2") == ["Left knee flexion", "Knee flexion"]
+        assert shown(page, ".key b") == ["L left"]
+        assert shown(page, ".sensors .chip") == ["Good"] * 2
+        wait(page, lambda: "–" not in shown(page, ".numbers td"), "the leg has strides")
+        assert shown(page, ".numbers thead th") == ["Last stride", "Left"]
+        least, largest, covered = (int(each.rstrip("°").replace("−", "-")) for each in shown(page, ".knee-facts dd"))
+        assert least < largest
+        assert abs(covered - (largest - least)) <= 1
+        keep(page, "knee")
+
+        page.find_element(By.CSS_SELECTOR, "button.danger").click()
+        wait(page, lambda: text(page, ".session-head .chip") == "Finished", "the session ends")
+        wait(page, lambda: shown(page, ".mean-curves h2") == ["Knee flexion"], "the knee's mean curve alone")
+        assert shown(page, "section[aria-label=Metrics] thead th") == ["", "Left"]
+        assert "zero is" in text(page, ".quality")
+        assert shown(page, "section[aria-label='Timed up and go']") == []
+        assert browsers.complaints(page) == []
+
+
+def test_with_reduced_motion_the_leg_is_drawn_on_paper_and_the_task_can_be_chosen(site):
+    with browsers.open_browser(1366, 768, "--force-prefers-reduced-motion") as page:
+        page.get(site.url)
+        pages.choose_source(page, KNEE)
+        assert [
+            group.get_attribute("label") for group in page.find_elements(By.CSS_SELECTOR, "#estimator optgroup")
+        ] == ["Single knee"]
+        assert not page.find_element(By.ID, "walkway").is_displayed()
+        Select(page.find_element(By.ID, "task")).select_by_visible_text("Timed up and go")
+        walkway = page.find_element(By.ID, "walkway")
+        assert walkway.is_displayed()
+        walkway.send_keys("3")
+        Select(page.find_element(By.ID, "speed")).select_by_visible_text(QUICK)
+        pages.confirm(page)
+        wait(page, lambda: live(page), "the session is live")
+        assert page.find_elements(By.CSS_SELECTOR, ".stage canvas") == []
+        angle = ".stage .knee-angle[visibility=visible]"
+        seen(page, angle, 4, "the angle beside the leg changes")
+        # Floor, thigh, shank and foot: of the other leg, the pelvis and the trunk there is nothing.
+        assert len(page.find_elements(By.CSS_SELECTOR, ".stage line:not([visibility=hidden])")) == 4
+        assert len(shown(page, ".strip .parts li")) == 5
+        assert shown(page, ".strip h2") == ["Timed up and go"]
+        keep(page, "knee-paper")
+        assert browsers.complaints(page) == []

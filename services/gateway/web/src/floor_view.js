@@ -159,7 +159,7 @@ class Card {
       say(this.facts[place].name, name);
       say(this.facts[place].value, value);
     });
-    say(this.advice, misplacedText(session.misplaced) || (session.phase === "estimating" ? session.message : ""));
+    say(this.advice, (session.phase === "estimating" && session.message) || misplacedText(session.misplaced));
     this.advice.title = this.advice.textContent;
     say(this.age, lastData(age_s));
     this.node.classList.toggle("stale", age_s !== null && age_s > STALE_S);

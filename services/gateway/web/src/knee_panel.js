@@ -3,7 +3,7 @@ import { el, say, svg } from "./dom.js";
 import { GRID, INK, SIDE_COLOUR, faint } from "./palette.js";
 import { degrees, number } from "./units.js";
 
-const SCALE = { low: -20, high: 150, width: 340, height: 34 };
+const SCALE = { low: -20, high: 150, width: 430, height: 34 };
 const TICKS = [0, 30, 60, 90, 120];
 
 export class KneePanel {

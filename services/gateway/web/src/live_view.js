@@ -130,9 +130,7 @@ export class LiveView {
     },
     calibration(calibration) {
       this.misplaced = calibration.misplaced;
-      const warning = misplacedText(calibration.misplaced);
-      say(this.warning, warning);
-      this.warning.hidden = warning === "";
+      this.warn();
       this.sensorList.showDatum(calibration.datum);
     },
     patient(message) {
@@ -145,6 +143,7 @@ export class LiveView {
       this.heard(pose.age_s);
       say(this.elapsed, clock(pose.at_s));
       this.advise([pose.notice, pose.phase === "estimating" ? pose.message : ""].filter(Boolean).join(". "));
+      this.warn();
       this.atS = pose.at_s;
       const figure = this.body && figureOf(pose, this.body);
       if (figure) this.skeleton.show(figure, kneeAngles(pose));
@@ -232,6 +231,13 @@ export class LiveView {
     this.numbers.tick(stale);
     this.knee?.tick(stale);
     this.strip.node.classList.toggle("stale", stale);
+  }
+
+  /** What is worn otherwise than declared, unless the estimator's own message says it and what to do. */
+  warn() {
+    const warning = this.message ? "" : misplacedText(this.misplaced);
+    say(this.warning, warning);
+    this.warning.hidden = warning === "";
   }
 
   advise(text) {

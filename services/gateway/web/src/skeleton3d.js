@@ -27,7 +27,7 @@ const VIEW_ANGLE_DEG = 30;
 /** What fits into the picture: a whole body, or legs alone, which need more width to be stretched out in sitting. m */
 const FRAMES = {
   body: { height: 1.94, width: 1.3, middle: 0.8, seatedWidth: 1.3 },
-  legs: { height: 1.14, width: 0.84, middle: 0.45, seatedWidth: 1.28 },
+  legs: { height: 1.2, width: 1.02, middle: 0.46, seatedWidth: 1.28 },
 };
 const FRAME_S = 0.05;
 

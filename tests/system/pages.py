@@ -1,0 +1,122 @@
+"""What browser tests share: a running floor, and the hands and eyes of a person at its page."""
+
+import os
+import socket
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+import pytest
+from selenium.webdriver import Chrome
+from selenium.webdriver.common.by import By
+from selenium.webdriver.support.ui import Select, WebDriverWait
+
+from services.bus.settings import BusSettings
+from services.cli import browser as browsers
+from services.cli.supervisor import Supervisor
+from services.gateway.settings import DIST
+
+NEEDED = [
+    pytest.mark.system,
+    pytest.mark.browser,
+    pytest.mark.skipif(browsers.absent() is not None, reason=f"no browser: {browsers.absent()}"),
+    pytest.mark.skipif(not (DIST / "index.html").exists(), reason="the pages are not built: run `make web`"),
+]
+
+SERVICES = ["archive", "estimation", "segmentation", "metrics", "gateway", "ingest"]
+PATIENCE_S = 90
+
+COLOURS = """
+const done = arguments[arguments.length - 1];
+const picture = new Image();
+picture.onload = () => {
+  const sheet = document.createElement("canvas");
+  sheet.width = picture.width;
+  sheet.height = picture.height;
+  const pen = sheet.getContext("2d");
+  pen.drawImage(picture, 0, 0);
+  const { data } = pen.getImageData(0, 0, sheet.width, sheet.height);
+  const seen = new Set();
+  for (let i = 0; i < data.length; i += 4) seen.add((data[i] << 16) | (data[i + 1] << 8) | data[i + 2]);
+  done(seen.size);
+};
+picture.src = "data:image/png;base64," + arguments[0];
+"""
+
+
+@dataclass
+class Site:
+    """A running floor: where its page is, and who runs its services."""
+
+    url: str
+    supervisor: Supervisor
+
+
+@contextmanager
+def open_site(recordings: Path) -> Iterator[Site]:
+    """All services on free ports."""
+    port = free_port()
+    environment = {
+        "AMBULA_HTTP_HOST": "127.0.0.1",
+        "AMBULA_HTTP_PORT": str(port),
+        "AMBULA_DATA_DIR": str(recordings),
+        "AMBULA_DATABASE": "",
+    }
+    settings = BusSettings(router=f"tcp/127.0.0.1:{free_port()}")
+    with Supervisor(SERVICES, settings, environment=environment) as supervisor:
+        supervisor.wait_until_ready(timeout_s=180)
+        yield Site(f"http://127.0.0.1:{port}", supervisor)
+
+
+def free_port() -> int:
+    """A port of loopback that nobody listens on."""
+    with socket.create_server(("127.0.0.1", 0)) as listener:
+        return int(listener.getsockname()[1])
+
+
+def wait(page: Chrome, condition: Callable[[], Any], what: str) -> Any:
+    """Poll until the condition holds; its value."""
+    return WebDriverWait(page, PATIENCE_S, poll_frequency=0.2).until(lambda _: condition(), what)
+
+
+def text(page: Chrome, selector: str) -> str:
+    """Text of the first such element; empty when there is none."""
+    found = page.find_elements(By.CSS_SELECTOR, selector)
+    return found[0].text if found else ""
+
+
+def choose_source(page: Chrome, kind: str) -> None:
+    """The button, then a source."""
+    page.find_element(By.ID, "start").click()
+    source = page.find_element(By.ID, "source")
+    wait(page, lambda: kind in source.text, "the sources are offered")
+    Select(source).select_by_visible_text(kind)
+
+
+def confirm(page: Chrome) -> None:
+    """Start."""
+    page.find_element(By.CSS_SELECTOR, "dialog button[type=submit]").click()
+    wait(page, lambda: "#/sessions/" in page.current_url, "the session opens")
+
+
+def start(page: Chrome, url: str, kind: str = "Walk, comfortable speed", speed: str = "Real time") -> None:
+    """As a person would: the button, a source, a speed, Start."""
+    page.get(url)
+    choose_source(page, kind)
+    Select(page.find_element(By.ID, "speed")).select_by_visible_text(speed)
+    confirm(page)
+
+
+def keep(page: Chrome, name: str) -> None:
+    """A picture for whoever wants to look: AMBULA_SCREENSHOTS names the folder."""
+    folder = os.environ.get("AMBULA_SCREENSHOTS")
+    if folder:
+        page.save_screenshot(str(Path(folder) / f"{name}.png"))
+
+
+def colours(page: Chrome, selector: str) -> int:
+    """Number of different colours of an element as it is seen."""
+    picture = page.find_element(By.CSS_SELECTOR, selector).screenshot_as_base64
+    return int(page.execute_async_script(COLOURS, picture))
