@@ -3,6 +3,7 @@
 from bisect import bisect_right
 from dataclasses import dataclass
 from operator import itemgetter
+from typing import NamedTuple
 
 import numpy as np
 
@@ -18,6 +19,24 @@ from services.estimation.samples import Sample, TickBatch, gather
 from services.estimation.sensor_checks import SensorChecks
 from services.flow.message import Message, Stream
 from services.flow.node import State, pack_array, unpack_array
+
+
+class Used(NamedTuple):
+    """Sensors in the order of the ticks, the body's first; and why the others, by name, are not used."""
+
+    sensors: list[SensorDescription]
+    body_sensors: int
+    unused: dict[str, str]
+
+
+def used_by_lower_body(description: SessionDescription) -> Used:
+    """Sensors of the model, then those on feet and back that tell the events of a leg."""
+    worn = [sensor for hub in description.hubs for sensor in hub.sensors]
+    lone = lone_segments(worn_segments(description.hubs))
+    of_the_model = [sensor for sensor in worn if sensor.segment in SEGMENTS]
+    used = of_the_model + [s for s in worn if s.segment in lone and s.segment not in SEGMENTS]
+    unused = {sensor.name: _why_unused(sensor.segment) for sensor in worn if sensor not in used}
+    return Used(used, len(of_the_model), unused)
 
 
 @dataclass(frozen=True)
@@ -37,16 +56,9 @@ class Intake:
     after their time has been passed on are refused as late.
     """
 
-    def __init__(self, description: SessionDescription, parameters: EstimationParameters) -> None:
+    def __init__(self, description: SessionDescription, parameters: EstimationParameters, used: Used) -> None:
         self.streams = tuple(Stream(IMU, hub.name) for hub in description.hubs)
-        worn = [sensor for hub in description.hubs for sensor in hub.sensors]
-        lone = lone_segments(worn_segments(description.hubs))
-        of_the_model = [sensor for sensor in worn if sensor.segment in SEGMENTS]
-        self.body_sensors = len(of_the_model)
-        """The sensors of the model come first, then those on feet."""
-        self.sensors = of_the_model + [s for s in worn if s.segment in lone and s.segment not in SEGMENTS]
-        self.unused = {sensor.name: _why_unused(sensor.segment) for sensor in worn if sensor not in self.sensors}
-        """Sensors that are not used, and why."""
+        self.sensors, self.body_sensors, self.unused = used
         self._places = [[self._place(sensor) for sensor in hub.sensors] for hub in description.hubs]
         self.checks = SensorChecks([sensor.name for sensor in self.sensors], parameters.checks)
         self._lateness_ns = round(parameters.lateness_s * 1e9)

@@ -186,6 +186,41 @@ class SegmentMotionParameters:
 
 
 @dataclass(frozen=True)
+class KneeParameters:
+    """The knee of two sensors in the service; the estimators have tunables of their own."""
+
+    kept_s: float = 30.0  # s of samples from before the axis is believed: a timed walk from a chair and back
+    good_axis_std: float = 0.12  # rad (7 deg); an axis that well known is taken at once, a worse one is waited with
+    longest_wait_s: float = 3.0  # s that a believed axis is waited with: axes of soft legs never become that good
+    together_s: float = 5.0  # s for which the first leg waits for the other, where both wear sensors
+    doubt_s: float = 1.0  # s after a sensor's return, a gap or the first sample in which the angle is not valid yet
+    instant_share: float = 0.75  # of a sample interval that must lie between instants where not everyone speaks
+    straightest: float = (
+        0.09  # rad (5 deg) of the knee that counts as straight where nobody stood: in walking, midstance
+    )
+    straightest_share: float = 0.02  # of the samples that are straighter: outliers
+    population_quality: float = 0.4  # best quality of a zero that is a population's, as WalkingParameters
+    placement_decides: float = 0.5  # |cos| between axis and the direction the placement tells, for it to give the sign
+    votes: int = 10  # looks, half a second apart, in which the leg moves and a misplacement is seen, until it is named
+    look_s: float = 0.5  # s
+    moving_rate: float = 0.5  # rad/s of the knee that a look must have seen
+    axis_change: float = 0.17  # rad (10 deg) by which an axis must have moved for the calibration to be sent again
+    smoothing_hz: float = 8.0  # Hz, low-pass of the rates' difference quotient, the acceleration
+    rate_std: float = (
+        0.37  # rad/s: soft tissue of thigh and shank, moving once and twice a stride; see UnmodelledErrors
+    )
+    inclination_std: float = 0.06  # rad: levelling, and soft tissue of the thigh
+    unworn_std: float = 0.5  # rad and rad/s of what nobody wears
+    heading_std: float = 1.0  # rad; where the leg faces at the start counts as ahead
+    mcgrath_motion_s: float = (
+        30.0  # s of motion whose principal component is the axis: a third of the published trials,
+    )
+    # and the axis has settled to a degree by then
+    mcgrath_kept_s: float = 60.0  # s that are held until then
+    mcgrath_least_s: float = 3.0  # s of motion that will do when the time is over, or the recording
+
+
+@dataclass(frozen=True)
 class EstimationParameters:
     """All of them."""
 
@@ -197,6 +232,7 @@ class EstimationParameters:
     bias: BiasParameters = field(default_factory=BiasParameters)
     follow_bias: bool = True  # in pauses, see resting_bias.py; without it the first standing's biases stay
     segment_motion: SegmentMotionParameters = field(default_factory=SegmentMotionParameters)
+    knee: KneeParameters = field(default_factory=KneeParameters)
     lateness_s: float = 0.04  # s of captured time that one hub may lag behind another before it is not waited for
     same_tick_s: float = 0.0005  # s, samples closer than this are fused at the time of the earliest
     before_walking_s: float = (

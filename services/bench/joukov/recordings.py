@@ -10,7 +10,7 @@ from schemas.signals import IMU
 from schemas.vocabulary import LOWER_BODY, Segment
 from services.biomech.lower_body_ekf import LowerBodyEkf, NoiseModel
 from services.biomech.rhythm.joukov import JoukovOscillator
-from services.estimation.intake import Intake
+from services.estimation.intake import Intake, used_by_lower_body
 from services.estimation.lower_body.calibrator import Calibrator
 from services.estimation.lower_body.lower_body_filter import Calibrated, LowerBodyFilter
 from services.estimation.parameters import EstimationParameters, FilterParameters
@@ -65,7 +65,7 @@ def calibrate(spec: str) -> Recording:
     """
     source = open_source(spec, session="joukov", estimator="ekf")
     description, parameters = source.describe(), EstimationParameters()
-    intake = Intake(description, parameters)
+    intake = Intake(description, parameters, used_by_lower_body(description))
     calibrator = Calibrator(description, intake.sensors, parameters)
     calibrated: Calibrated | None = None
     ticks: list[Tick] = []

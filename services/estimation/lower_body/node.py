@@ -14,7 +14,7 @@ from schemas.session import SessionDescription
 from schemas.signals import CALIBRATION, JOINT_STATE, LEARNED_RHYTHM, LIVE_POSE, RHYTHM, SEGMENT_MOTION, Signal
 from schemas.vocabulary import LOWER_BODY, Segment
 from services.biomech.event_sources import lone_segments, worn_segments
-from services.estimation.intake import Intake
+from services.estimation.intake import Intake, used_by_lower_body
 from services.estimation.lower_body.calibration_message import calibration_message
 from services.estimation.lower_body.calibrator import Calibrator, pack_calibrated, unpack_calibrated
 from services.estimation.lower_body.estimates import estimates
@@ -45,7 +45,7 @@ class LowerBodyNode:
     def __init__(self, description: SessionDescription, parameters: EstimationParameters | None = None) -> None:
         self._description = description
         self._parameters = parameters or EstimationParameters()
-        self._intake = Intake(description, self._parameters)
+        self._intake = Intake(description, self._parameters, used_by_lower_body(description))
         self._calibrator = Calibrator(description, self._intake.sensors, self._parameters)
         self._calibrated: Calibrated | None = None
         self._filter: LowerBodyFilter | None = None

@@ -1,0 +1,130 @@
+"""Sensors worn otherwise than declared, named when the motion has shown it again and again.
+
+Every half second in which the knee moves is a look; what a look shows clearly is a vote for or against. A misplacement
+is named after `votes` votes for it without as many against, and withdrawn when as many have spoken against it. A whole
+leg that points up (a raised leg of somebody who lies) looks like swapped sensors both upside down: that counts as
+nothing.
+"""
+
+from collections.abc import Sequence
+
+import numpy as np
+from numpy.typing import NDArray
+
+from schemas.session import Placement, SensorDescription
+from schemas.vocabulary import Misplacement, Side
+from services.biomech.two_sensor_knee.placement import CLEAR_M, CLEAR_SHARE, are_swapped, leg_worn_on
+from services.estimation.knee.estimator import Evidence
+from services.estimation.knee.mounting import upward
+from services.estimation.parameters import KneeParameters
+from services.flow.node import State
+
+Array = NDArray[np.float64]
+
+UPSIDE_DOWN = (Misplacement.THIGH_UPSIDE_DOWN, Misplacement.SHANK_UPSIDE_DOWN)
+WATCHED = (Misplacement.SWAPPED, *UPSIDE_DOWN, Misplacement.OTHER_LEG)
+
+
+class PlacementWatch:
+    """Of one leg; sensors thigh first."""
+
+    def __init__(self, side: Side, sensors: Sequence[SensorDescription], parameters: KneeParameters) -> None:
+        self._side = side
+        self._parameters = parameters
+        self._upward = [upward(sensor) for sensor in sensors]
+        self._outward = [_outward(sensor) for sensor in sensors]
+        self._votes = dict.fromkeys(WATCHED, 0)
+        self._seen: list[Misplacement] = []
+        self._waited_s = 0.0
+        self._has_moved = False
+
+    @property
+    def found(self) -> list[Misplacement]:
+        """What is named, in the order of the vocabulary."""
+        return list(self._seen)
+
+    @property
+    def suspects_swap(self) -> bool:
+        """Some look has shown swapped sensors, and none since the contrary."""
+        return self._votes[Misplacement.SWAPPED] > 0
+
+    def is_due(self, flexion_rate: float, dt_s: float) -> bool:
+        """Whether this sample, dt_s after the one before, ends an interval in which the knee has moved."""
+        self._has_moved = self._has_moved or abs(flexion_rate) > self._parameters.moving_rate
+        self._waited_s += dt_s
+        if self._waited_s < self._parameters.look_s or not self._has_moved:
+            return False
+        self._waited_s, self._has_moved = 0.0, False
+        return True
+
+    def look(self, evidence: Evidence) -> None:
+        """Take what the estimator knows now."""
+        shown = self._shown(evidence)
+        most = self._parameters.votes
+        for kind, vote in shown.items():
+            self._votes[kind] = min(most, max(0, self._votes[kind] + vote))
+            if self._votes[kind] == most and kind not in self._seen:
+                self._seen = [each for each in WATCHED if each in (*self._seen, kind)]
+            elif self._votes[kind] == 0 and kind in self._seen:
+                self._seen.remove(kind)
+
+    def _shown(self, evidence: Evidence) -> dict[Misplacement, int]:
+        """+1 shown, -1 shown not to be, 0 unclear."""
+        swapped = _swap_vote(evidence)
+        turned = [_turn_vote(up, wanted) for up, wanted in zip(evidence.up, self._upward, strict=True)]
+        if swapped > 0 and all(vote > 0 for vote in turned):
+            return {}
+        shown = {Misplacement.SWAPPED: swapped, **dict(zip(UPSIDE_DOWN, turned, strict=True))}
+        if swapped < 0:
+            shown[Misplacement.OTHER_LEG] = self._leg_vote(evidence)
+        return shown
+
+    def _leg_vote(self, evidence: Evidence) -> int:
+        if evidence.axes is None:
+            return 0
+        pairs = zip(evidence.axes, self._outward, strict=True)
+        legs = {leg_worn_on(axis, outward) for axis, outward in pairs if outward is not None} - {None}
+        if len(legs) != 1:
+            return 0
+        return -1 if self._side in legs else 1
+
+    def snapshot(self) -> State:
+        """Votes, and the interval under way."""
+        return {
+            "votes": [self._votes[kind] for kind in WATCHED],
+            "seen": [kind.value for kind in self._seen],
+            "waited_s": self._waited_s,
+            "has_moved": self._has_moved,
+        }
+
+    def restore(self, state: State) -> None:
+        """Inverse of `snapshot`."""
+        self._votes = dict(zip(WATCHED, state["votes"], strict=True))
+        self._seen = [Misplacement(kind) for kind in state["seen"]]
+        self._waited_s, self._has_moved = state["waited_s"], state["has_moved"]
+
+
+def _swap_vote(evidence: Evidence) -> int:
+    if evidence.arms is None:
+        return 0
+    if are_swapped(evidence.arms, evidence.up):
+        return 1
+    above = np.sum(evidence.arms * evidence.up, axis=1)
+    return -1 if above[0] < -CLEAR_M and above[1] > CLEAR_M else 0
+
+
+def _turn_vote(up: Array, wanted: Array | None) -> int:
+    if wanted is None:
+        return 0
+    share = float(up @ wanted)
+    if abs(share) < CLEAR_SHARE:
+        return 0
+    return 1 if share < 0.0 else -1
+
+
+def _outward(sensor: SensorDescription) -> Array | None:
+    """Out of the outer side of the leg; None for a sensor that is not worn on a side."""
+    outward = np.array(sensor.outward_axis, dtype=np.float64)
+    if sensor.placement is Placement.LATERAL:
+        return outward
+    return -outward if sensor.placement is Placement.MEDIAL else None
