@@ -61,6 +61,13 @@ def recovery(json_path: Path | None = None) -> Scoreboard:
     return run(json_path)
 
 
+def repetitions(json_path: Path | None = None, *subject: str) -> Scoreboard:
+    """Repetitions of knee exercises: counts, ranges and boundaries against what was done."""
+    from services.bench.repetitions.board import run
+
+    return run(json_path, *subject)
+
+
 def strides(json_path: Path | None = None, *subject: str) -> Scoreboard:
     """Stride counts and event times against reviewed contacts and synthetic walks."""
     from services.bench.gait.strides import run
@@ -99,6 +106,7 @@ SCOREBOARDS: dict[str, Callable[..., Scoreboard]] = {
     "knee": knee,
     "loss": loss,
     "recovery": recovery,
+    "repetitions": repetitions,
     "rhythm": rhythm,
     "step": step,
     "strides": strides,

@@ -66,6 +66,7 @@ class SyntheticKnee(SyntheticSession):
         self.title = f"Synthetic {self.protocol} (seed {parameters.seed})"
         if self.exercise is Exercise.CYCLING:
             parameters = replace(parameters, hold=0.0, breath=0.0, hesitations=0.0, partials=0.0)
+        self.dials = parameters
         self.plan = KneePlan.of(parameters)
         self.reach = parameters.range or DEFAULT_RANGE[self.exercise]
         self.least = parameters.deficit or LEAST_FLEXION[self.exercise]

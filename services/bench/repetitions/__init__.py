@@ -1,0 +1,1 @@
+"""Repetitions of knee exercises against what was truly done."""

@@ -1,0 +1,74 @@
+"""Recorded people: the repetitions of an estimated knee against those of the measured one, and steps that are none."""
+
+import math
+
+import numpy as np
+
+from schemas.vocabulary import Side
+from services.bench.repetitions.runs import of_reference, through_chain
+from services.bench.repetitions.scores import mean_absolute
+from services.bench.scoreboard import Row, at_most, informative
+from services.ingest.errors import SourceError
+from services.segmentation.repetitions.knee_watch import range_of
+
+MEASURED = {
+    "sit to stand (Al Borno)": ("alborno_sub03_sts1", Side.LEFT),
+    "drop landings (Fan)": ("fan_knee_drop_landing_left", Side.LEFT),
+}
+"""Recordings with an optical knee. Nothing was chosen on them."""
+WALKS = {
+    "walk with turns (NeuRA)": "neura_s02_walk",
+    "stroke survivor's treadmill": "moving_reality_pp11",
+    "synthetic, slow": "synthetic:walk?speed=0.5&seed=211&duration=60",
+    "synthetic, usual": "synthetic:walk?speed=1.1&seed=212&duration=60",
+    "synthetic, fast": "synthetic:walk?speed=1.5&seed=213&duration=60",
+    "synthetic, one leg alone": "synthetic:walk?worn=2&speed=1.0&seed=214&duration=60",
+}
+NEAR_S = 0.5
+"""s by which turns of the same repetition may differ."""
+
+
+def measured_rows() -> list[Row]:
+    """Agreement with the same segmentation of the optical angle."""
+    rows: list[Row] = []
+    for name, (spec, side) in MEASURED.items():
+        try:
+            run = through_chain(spec)
+        except (SourceError, ValueError) as error:
+            rows.append(Row(f"{name}: {error}"[:120], None, "", None, None, None))
+            continue
+        ours = [one for one in run.of(side) if one.valid]
+        seen_from = min((one.start_ns for one in run.of(side)), default=0) / 1e9 - NEAR_S
+        theirs = [one for one in of_reference(run, side) if one.valid and one.start_ns / 1e9 >= seen_from]
+        pairs = [
+            (one, other)
+            for other in theirs
+            for one in ours
+            if abs(one.turn_ns - other.turn_ns) < NEAR_S * 1e9
+        ]  # fmt: skip
+        ranges = [range_of(one) - range_of(other) for one, other in pairs]
+        turns = [(one.turn_ns - other.turn_ns) / 1e9 for one, other in pairs]
+        starts = [(one.start_ns - other.start_ns) / 1e9 for one, other in pairs]
+        unlike = len(ours) + len(theirs) - 2 * len(pairs)
+        rows += [
+            at_most(f"{name}: repetitions of one angle alone", unlike, "", 0.0, len(theirs)),
+            at_most(f"{name}: range, mean absolute difference", math.degrees(mean_absolute(ranges)), "deg", 5.0),
+            informative(f"{name}: range, standard deviation", float(np.degrees(np.std(ranges or [np.nan]))), "deg"),
+            informative(f"{name}: turn, mean absolute difference", mean_absolute(turns), "s"),
+            informative(f"{name}: start, mean absolute difference", mean_absolute(starts), "s", detail=True),
+        ]
+    return rows
+
+
+def walking_rows() -> list[Row]:
+    """Steps that were counted as repetitions, per hundred strides."""
+    rows: list[Row] = []
+    for name, spec in WALKS.items():
+        try:
+            run = through_chain(spec)
+        except (SourceError, ValueError) as error:
+            rows.append(Row(f"{name}: {error}"[:120], None, "", None, None, None))
+            continue
+        counted = sum(one.valid for one in run.repetitions)
+        rows.append(at_most(f"{name}: steps counted", 100 * counted / max(run.strides, 1), "%", 1.0, run.strides))
+    return rows
