@@ -80,7 +80,11 @@ class ExcursionState:
 
 
 class ExcursionDetector:
-    """One knee, at increasing times. The hysteresis is the caller's, who knows the person's range."""
+    """One knee, at increasing times.
+
+    The hysteresis, and how far the knee must go from home against its usual direction, are the caller's, who knows the
+    person's range: what is left after a stop half-way is no movement of its own.
+    """
 
     def __init__(self, parameters: RepetitionParameters) -> None:
         self._parameters = parameters
@@ -96,13 +100,13 @@ class ExcursionDetector:
             return None
         return min(state.low.captured_ns, state.high.captured_ns)
 
-    def step(self, point: Point, hysteresis: float) -> Excursion | None:
+    def step(self, point: Point, hysteresis: float, against_usual: float) -> Excursion | None:
         """Take one point; the excursion that it closes."""
         state = self.state
         if state.rest is None or abs(point.angle - state.rest.angle) > self._parameters.still_band:
             state.rest = point
         if state.away is None:
-            self._at_home(point, hysteresis)
+            self._at_home(point, hysteresis, against_usual)
             return None
         state.away = _farther_or_nearer(state.away, point)
         return self._closed(state.away, point, hysteresis)
@@ -116,7 +120,7 @@ class ExcursionDetector:
     def _still_s(self, now: Point) -> float:
         return 0.0 if self.state.rest is None else (now.captured_ns - self.state.rest.captured_ns) / 1e9
 
-    def _at_home(self, point: Point, hysteresis: float) -> None:
+    def _at_home(self, point: Point, hysteresis: float, against_usual: float) -> None:
         """Leaves home either way after a rest; before one (a gap came) only in the usual direction."""
         state, p = self.state, self._parameters
         if self._still_s(point) >= p.still_s:
@@ -126,11 +130,10 @@ class ExcursionDetector:
         too_old = point.captured_ns - p.longest_s * 1e9
         state.low = low if low.captured_ns > too_old else point
         state.high = high if high.captured_ns > too_old else point
-        either = state.rested or state.usual == 0
-        if point.angle - state.low.angle >= hysteresis and (either or state.usual > 0):
-            state.away = Away(1, state.low, point, point)
-        elif state.high.angle - point.angle >= hysteresis and (either or state.usual < 0):
-            state.away = Away(-1, state.high, point, point)
+        for sign, home in ((1, state.low), (-1, state.high)):
+            least = against_usual if sign == -state.usual else hysteresis
+            if abs(point.angle - home.angle) >= least and (state.rested or sign != -state.usual):
+                state.away = Away(sign, home, point, point)
 
     def _closed(self, away: Away, point: Point, hysteresis: float) -> Excursion | None:
         p = self._parameters

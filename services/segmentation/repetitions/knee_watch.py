@@ -40,7 +40,7 @@ class KneeWatch:
         p = self._parameters
         self._trail.append(sample)
         point = Point(sample.captured_ns, *self._trail.recent_mean(p.smoothing_s))
-        excursion = self._detector.step(point, self._hysteresis())
+        excursion = self._detector.step(point, *self._least_ways())
         found = [] if excursion is None else [self._repetition(excursion, NOT_BACK.get(excursion.closed))]
         needed_ns = self._detector.needed_from_ns
         if needed_ns is not None:
@@ -63,10 +63,13 @@ class KneeWatch:
         is_back = come_back >= self._parameters.rested_share * excursion.way
         return [self._repetition(excursion, None if is_back else ENDED)]
 
-    def _hysteresis(self) -> float:
+    def _least_ways(self) -> tuple[float, float]:
         p = self._parameters
         usual = self._usual_range()
-        return p.turn_floor if usual is None else max(p.turn_floor, p.turn_share * usual)
+        if usual is None:
+            return p.turn_floor, p.turn_floor
+        hysteresis = max(p.turn_floor, p.turn_share * usual)
+        return hysteresis, max(hysteresis, p.partial_share * usual)
 
     def _usual_range(self) -> float | None:
         return median(self._ranges) if len(self._ranges) >= self._parameters.least_memory else None

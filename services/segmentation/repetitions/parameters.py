@@ -18,8 +18,8 @@ class RepetitionParameters:
     """share of the person's own median range that it must come back; hesitations are smaller (proposal)."""
     memory: int = 7
     """excursions whose median range is the person's own."""
-    least_memory: int = 3
-    """excursions from which on there is such a median; as many as a mean needs."""
+    least_memory: int = 2
+    """excursions from which on there is such a median; one alone may be an odd one."""
 
     still_band: float = 0.04
     """rad (2.3 deg) within which a resting knee stays; a smoothed tremor of 3 deg does."""
@@ -36,7 +36,8 @@ class RepetitionParameters:
     ends_share: float = 0.4
     """share of the range by which both ends may differ; beyond it one end was not the resting side (proposal)."""
     partial_share: float = 0.5
-    """share of the person's own median range below which a repetition is partial (proposal)."""
+    """share of the person's own median range below which a repetition is partial, and a movement against the usual
+    direction none (proposal)."""
     shortest_s: float = 0.3
     """s; twice as fast as the fastest cycling (1.5 per second)."""
     longest_s: float = 30.0

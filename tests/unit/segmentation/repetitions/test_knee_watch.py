@@ -107,6 +107,22 @@ def test_a_hesitation_is_part_of_its_repetition():
     assert [one.valid for one in made] == [True] * 5
 
 
+def test_what_is_left_of_a_partial_one_that_stopped_half_way_is_none():
+    whole = there_and_back(SEATED, 0.2, 2.0)
+    stops = np.concatenate([moved(SEATED, 1.3, 1.0), held(1.3, 1.0), moved(1.3, 1.1, 1.0), moved(1.1, SEATED, 1.0)])
+    made = found_in(np.concatenate([held(SEATED, 2.0), *[whole] * 3, stops, held(SEATED, 3.0), *[whole] * 2]))
+    assert all(one.start_angle > one.turn_angle for one in made)
+    assert len(valid(made)) == 5
+
+
+def test_another_exercise_may_rest_on_the_other_side():
+    extension, squat = there_and_back(SEATED, STANDING, 2.0), there_and_back(STANDING, SEATED, 2.0)
+    angle = np.concatenate(
+        [held(SEATED, 2.0), *[extension] * 3, moved(SEATED, STANDING, 1.0), held(STANDING, 16.0), *[squat] * 3]
+    )
+    assert [one.valid for one in found_in(angle)] == [True] * 3 + [False] + [True] * 3
+
+
 def test_a_repetition_that_began_half_way_does_not_count():
     whole = there_and_back(STANDING, 1.5, 2.0, rest_s=0.0)
     made = found_in(np.concatenate([held(0.8, 1.0), moved(0.8, 1.5, 1.0), moved(1.5, STANDING, 1.0), *[whole] * 3]))
