@@ -65,14 +65,31 @@ class Control(Protocol):
         """Recordings that an ingest has at hand."""
 
 
-def _simulated(spec: str, title: str, worn: Worn = "lower_body", task: Task = Task.WALK) -> Source:
-    return Source(f"synthetic:{spec}&duration=120", title, "synthetic", 120.0, worn, task)
+def _walker(options: str, title: str, worn: Worn = "lower_body") -> Source:
+    return Source(f"synthetic:walk?{options}&duration=120", title, "synthetic", 120.0, worn, Task.WALK)
 
 
 SYNTHETIC_SOURCES = (
-    _simulated("walk?speed=1.2&seed=1", "Walk, comfortable speed"),
-    _simulated("walk?speed=0.7&seed=2", "Walk, slow"),
-    _simulated("walk?speed=0.9&asymmetry=0.25&seed=3", "Walk, uneven sides"),
-    _simulated("walk?worn=1&speed=1.1&seed=4", "Walk, left knee alone", "knee"),
+    _walker("speed=1.2&seed=1", "Walk, comfortable speed"),
+    _walker("speed=0.7&seed=2", "Walk, slow"),
+    _walker("speed=0.9&asymmetry=0.25&seed=3", "Walk, uneven sides"),
+    _walker("worn=1&speed=1.1&seed=4", "Walk, left knee alone", "knee"),
+    Source(
+        "synthetic:tug?attempts=2&stroll=8&seed=4",
+        "Timed up and go, twice",
+        "synthetic",
+        None,
+        "lower_body",
+        Task.TIMED_UP_AND_GO,
+    ),
+    Source(
+        "synthetic:tug?attempts=2&worn=2&seed=4",
+        "Timed up and go, right knee alone",
+        "synthetic",
+        None,
+        "knee",
+        Task.TIMED_UP_AND_GO,
+    ),
+    Source("synthetic:knee?seed=2", "Seated knee extension, right knee", "synthetic", 90.0, "knee", Task.KNEE_FLEXION),
 )
-"""Simulated walkers that are always there."""
+"""Simulated people that are always there."""

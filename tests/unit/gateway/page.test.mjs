@@ -171,11 +171,15 @@ test("what is worn otherwise than declared is said in plain words", () => {
 test("the quality line says what the numbers rest on", () => {
   const counts = (name, value) => ({ name, side: "left", value });
   assert.equal(
-    qualityText([counts("strides_counted", 12), counts("strides_rejected", 2)], "quiet standing"),
+    qualityText([counts("strides_counted", 12), counts("strides_rejected", 2)], { datum: "quiet standing" }),
     "Quality: 12 strides count, 2 left out  ·  zero is quiet standing",
   );
-  assert.equal(qualityText([counts("repetitions_counted", 8)], null), "Quality: 8 repetitions count");
-  assert.equal(qualityText([counts("strides_counted", 0)], null), "");
+  const exercise = { datum: null, task: "knee_flexion" };
+  assert.equal(
+    qualityText([counts("repetitions_counted", 8), counts("strides_counted", 5)], exercise),
+    "Quality: 8 repetitions count",
+  );
+  assert.equal(qualityText([counts("strides_counted", 0)], { datum: null }), "");
 });
 
 test("only what the sensors can tell is shown", () => {

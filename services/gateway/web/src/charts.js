@@ -5,6 +5,8 @@ import { GRID, SIDE_COLOUR, SIDE_DASH, SOFT_INK, faint } from "./palette.js";
 import { degrees, number } from "./units.js";
 
 const SPAN_S = 8;
+/** A longer silence is left open, not bridged by a line. */
+const GAP_S = 0.5;
 const FONT = '12px "Segoe UI", Roboto, "Helvetica Neue", "Noto Sans", "Liberation Sans", Arial, sans-serif';
 const SIDES = ["left", "right"];
 
@@ -95,6 +97,7 @@ export class RollingChart {
       const last = this.at[this.at.length - 1];
       if (pose.at_s < last - SPAN_S) this.clear();
       else if (pose.at_s <= last) continue;
+      else if (pose.at_s > last + GAP_S) this.append({ at_s: last + GAP_S / 2, angles: {}, angles_std: {} });
       this.append(pose);
     }
     const now = this.at[this.at.length - 1];

@@ -48,14 +48,15 @@ export function ratioTable(title, meaning, metrics = []) {
   );
 }
 
-export function metricTile(metric) {
+/** One number, large. `named` says the side too. */
+export function metricTile(metric, named = false) {
   const { factor, unit, digits } = shown(metric.unit, metric.name);
   const withheld = metric.value === null;
   const spread = metric.spread === null || withheld ? "" : `± ${number(metric.spread * factor, digits)}`;
   return el(
     "div",
     { class: "tile" },
-    el("span", { class: "name" }, metricName(metric.name)),
+    el("span", { class: "name" }, metricName(metric.name) + (named ? `, ${metric.side}` : "")),
     el(
       "span",
       {},

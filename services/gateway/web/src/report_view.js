@@ -2,6 +2,7 @@
 import { get } from "./api.js";
 import { MeanChart } from "./charts.js";
 import { el, fill } from "./dom.js";
+import { SIDES } from "./figure.js";
 import { PatientLink } from "./patient_link.js";
 import { PhaseTimeline, attemptsOf, phaseTable } from "./phase_timeline.js";
 import { RepetitionChart, repetitionTable } from "./repetition_report.js";
@@ -10,6 +11,13 @@ import { bytes, clock, number, when } from "./units.js";
 import { STORED_WORDS, TASKS, headlineRank, jointName, metricGroup, misplacedText, qualityText } from "./words.js";
 
 const FIRST_CURVES = ["hip_flexion", "knee_flexion"];
+const EXERCISE_HEADLINES = [
+  "repetitions_counted",
+  "repetition_range",
+  "repetition_flexion_largest",
+  "repetition_flexion_smallest",
+  "repetition_tempo",
+];
 const PARTS = ["metrics", "curves", "phases", "repetitions", "recordings"];
 
 export class ReportView {
@@ -83,44 +91,64 @@ export class ReportView {
     if (this.disposed) return;
     if (metrics instanceof Error) fill(this.numbers, el("p", { class: "quiet" }, metrics.message));
     else this.showMetrics(metrics.metrics);
-    if (!(phases instanceof Error) && phases.phases.length > 0) this.showPhases(phases.phases);
+    if (!(phases instanceof Error)) this.showPhases(phases.phases);
     if (!(repetitions instanceof Error) && repetitions.repetitions.length > 0)
       this.showRepetitions(repetitions.repetitions);
-    if (!(curves instanceof Error)) this.showCurves(curves.curves);
+    if (!(curves instanceof Error) && this.walks) this.showCurves(curves.curves);
     this.showFiles(files instanceof Error ? [] : files);
+  }
+
+  /** Nobody walks in an exercise: what swings to and fro there are no strides. */
+  get walks() {
+    return this.session.task !== "knee_flexion";
   }
 
   showMetrics(metrics) {
     const groups = Object.groupBy(metrics, (metric) => metricGroup(metric) ?? "rest");
-    const headlines = (groups.headlines ?? []).filter(isSeen).toSorted((a, b) => headlineRank(a) - headlineRank(b));
-    fill(this.tiles, ...headlines.map(metricTile));
-    this.tiles.hidden = headlines.length === 0;
-    this.quality.textContent = qualityText(metrics, this.session.datum);
-    const strides = sideTable([...(groups.sides ?? []), ...(groups.counts ?? [])]);
-    const exercise = sideTable(groups.exercise ?? []);
-    const nothing = el("p", { class: "quiet" }, "No stride was found.");
-    fill(this.numbers, strides ?? nothing);
-    this.strides.hidden = !strides && (this.session.task ?? "walk") !== "walk";
+    this.quality.textContent = qualityText(metrics, this.session);
+    this.strides.hidden = !this.walks;
+    if (this.walks) this.showStrides(groups);
+    else this.showExercise(groups.exercise ?? []);
+  }
+
+  showStrides({ headlines = [], sides = [], counts = [], symmetry, legs, variability }) {
+    const tiles = headlines.filter(isSeen).toSorted((a, b) => headlineRank(a) - headlineRank(b));
+    fill(this.tiles, ...tiles.map((metric) => metricTile(metric)));
+    this.tiles.hidden = tiles.length === 0;
+    fill(this.numbers, sideTable([...sides, ...counts]) ?? el("p", { class: "quiet" }, "No stride was found."));
+    const both = SIDES.every((side) => sides.some((metric) => metric.side === side && isSeen(metric)));
     const tables = [
-      ratioTable("Symmetry", "larger side / smaller side, 1.00 is equal", groups.symmetry),
-      ratioTable("Left against right", "mean hip and knee curves over the stride, 0 is equal", groups.legs),
-      ratioTable("Variability", "standard deviation / mean", groups.variability),
+      both && ratioTable("Symmetry", "larger side / smaller side, 1.00 is equal", symmetry),
+      both && ratioTable("Left against right", "mean hip and knee curves over the stride, 0 is equal", legs),
+      ratioTable("Variability", "standard deviation / mean", variability),
     ].filter(Boolean);
     fill(this.more, ...tables);
     this.more.hidden = tables.length === 0;
-    if (!exercise) return;
-    this.exercise.hidden = false;
+  }
+
+  showExercise(metrics) {
+    const list = sideTable(metrics);
+    const bothKnees = SIDES.every((side) => metrics.some((metric) => metric.side === side && isSeen(metric)));
+    const tiles = metrics.filter((metric) => isSeen(metric) && EXERCISE_HEADLINES.includes(metric.name));
+    fill(this.tiles, ...tiles.map((metric) => metricTile(metric, bothKnees)));
+    this.tiles.hidden = tiles.length === 0;
     const meaning = el("span", { class: "quiet" }, "mean ± standard deviation over repetitions");
-    fill(this.exercise, el("div", { class: "panel-head" }, el("h2", {}, "Exercise"), meaning), exercise);
+    const nothing = el("p", { class: "quiet" }, "No repetition was found.");
+    fill(this.exercise, el("div", { class: "panel-head" }, el("h2", {}, "Exercise"), meaning), list ?? nothing);
+    this.exercise.hidden = false;
   }
 
   showPhases(phases) {
+    this.timed.hidden = phases.length === 0 && this.session.task !== "timed_up_and_go";
+    if (this.timed.hidden) return;
+    const meaning = phases.length > 0 ? "seconds ± one standard deviation" : "none was found";
+    const head = el("div", { class: "panel-head" }, el("h2", {}, TASKS.timed_up_and_go));
+    head.append(el("span", { class: "quiet" }, meaning));
+    fill(this.timed, head);
+    if (phases.length === 0) return;
     const attempts = attemptsOf(phases);
     const host = el("div", { class: "drawn" });
-    this.timed.hidden = false;
-    const meaning = el("span", { class: "quiet" }, "seconds ± one standard deviation");
-    const head = el("div", { class: "panel-head" }, el("h2", {}, "Timed up and go"), meaning);
-    fill(this.timed, head, host, phaseTable(attempts));
+    this.timed.append(host, phaseTable(attempts));
     this.charts.push(new PhaseTimeline(host, attempts));
   }
 
@@ -145,7 +173,7 @@ export class ReportView {
 
   showCurve(joint, sides) {
     const host = el("div", { class: "chart mean" });
-    const seen = ["left", "right"].filter((side) => sides[side]);
+    const seen = SIDES.filter((side) => sides[side]);
     const counts = seen.map((side) => `${side === "left" ? "L" : "R"} ${sides[side].strides}`).join(", ");
     const head = el(
       "div",

@@ -77,18 +77,26 @@ export function metricGroup({ name, side }) {
 /** Order of the headlines; unknown ones come last. */
 export const headlineRank = ({ name }) => (HEADLINES.includes(name) ? HEADLINES.indexOf(name) : HEADLINES.length);
 
-/** What the numbers of a report rest on, and what zero means. */
-export function qualityText(metrics, datum) {
+/** What the numbers of a report rest on, and what zero means. In an exercise nobody makes strides. */
+export function qualityText(metrics, { datum, task }) {
   const count = (name) =>
     metrics.filter((metric) => metric.name === name).reduce((sum, metric) => sum + (metric.value ?? 0), 0);
-  const told = (what) => {
-    const [counted, left_out] = [count(`${what}_counted`), count(`${what}_rejected`)];
-    if (counted + left_out === 0) return null;
-    return left_out > 0 ? `${counted} ${what} count, ${left_out} left out` : `${counted} ${what} count`;
-  };
-  const facts = [told("strides"), told("repetitions"), datum ? `zero is ${datum}` : null].filter(Boolean);
+  const told = ([name, words]) => (count(name) > 0 ? `${count(name)} ${words}` : null);
+  const counts = (task === "knee_flexion" ? REPETITION_COUNTS : STRIDE_COUNTS).map(told).filter(Boolean).join(", ");
+  const facts = [counts, datum ? `zero is ${datum}` : null].filter(Boolean);
   return facts.length > 0 ? `Quality: ${facts.join("  ·  ")}` : "";
 }
+
+const STRIDE_COUNTS = [
+  ["strides_counted", "strides count"],
+  ["strides_starting_or_stopping", "starting or stopping"],
+  ["strides_turning", "while turning"],
+  ["strides_rejected", "left out"],
+];
+const REPETITION_COUNTS = [
+  ["repetitions_counted", "repetitions count"],
+  ["repetitions_rejected", "left out"],
+];
 
 /** What a sensor's state means to a therapist. */
 export const SENSOR_WORDS = {
