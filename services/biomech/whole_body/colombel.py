@@ -12,13 +12,11 @@ from services.biomech.whole_body.constrained_ekf import bounds_of
 from services.biomech.whole_body.kernels.tables import COORDINATES, SEEN
 from services.biomech.whole_body.model import MODEL, WholeBodyModel
 from services.biomech.whole_body.parameters import ProcessNoise
+from services.biomech.whole_body.presets import PUBLISHED_VARIANCE
 from services.biomech.whole_body.start import Start
 from services.biomech.whole_body.textbook import measurement, process_noise, transition
 
 Array = NDArray[np.float64]
-
-PUBLISHED_VARIANCE = 0.0052
-"""m^2, average measurement variance of the paper (section 3.4)."""
 
 
 class ColombelCekf:

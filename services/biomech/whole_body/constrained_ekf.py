@@ -6,6 +6,7 @@ it remains symmetric and positive definite. `colombel.py` holds the printed form
 """
 
 from dataclasses import dataclass, field
+from math import radians
 
 import numpy as np
 from numpy.typing import NDArray
@@ -49,6 +50,10 @@ class FilterSettings:
     process: ProcessNoise = field(default_factory=ProcessNoise)
     priors: SoftPriors = field(default_factory=SoftPriors)
     constrained: bool = True
+    margin: float = radians(10.0)
+    """rad. What is carried on may exceed the limits of angles by this much; what is told never does. An offset of the
+    camera holds a straight knee beyond its limit for long: to clip it at every frame would read that into the biases
+    and the other angles. Lengths have no margin. [K]"""
 
 
 OURS = FilterSettings()
@@ -56,6 +61,8 @@ OURS = FilterSettings()
 
 class WholeBodyEkf:
     """The filter of one person in view. `x` and `P` are its whole state.
+
+    `estimate` (n,) is x within the limits: what is told.
 
     x (n,): 25 coordinates q, 12 lengths, 45 biases if the start has any, 25 velocities, 25 accelerations.
     """
@@ -73,6 +80,10 @@ class WholeBodyEkf:
         camera = settings.camera
         self._noise = Noise(*camera.per_centre(), camera.inferred, camera.gate)
         self._bounds = bounds_of(start, constrained=settings.constrained)
+        self._wide = bounds_of(start, constrained=settings.constrained)
+        for limit, outwards in ((self._wide.low, -1.0), (self._wide.high, 1.0)):
+            limit[: COORDINATES - 3] += outwards * settings.margin
+        self.estimate = self.x.copy()
         rest = np.concatenate([np.zeros(3), per_angle(REST_DEG)[:, 0]])
         columns = settings.priors.columns()
         self._priors = Priors(columns, rest[columns], settings.priors.variances())
@@ -107,28 +118,29 @@ class WholeBodyEkf:
             self.x, self._padded, self.velocity, dt_s, self._density, self.settings.process.held, share,
             np.where(seen[:, None] > 0, centres, 0.0), seen,
             camera.swap_scale, camera.swap_most, camera.swap_share,
-            self._tree, self._columns, self._noise, self._priors, self._bounds, self._update,
+            self._tree, self._columns, self._noise, self._priors, self._wide, self._bounds, self._update,
+            self.estimate,
         )  # fmt: skip
 
     @property
     def q(self) -> Array:
         """(25,) translations of spine_base, m, and the angles, rad."""
-        return self.x[:COORDINATES]
+        return self.estimate[:COORDINATES]
 
     @property
     def angles(self) -> Array:
         """(22,) rad, in the order of WHOLE_BODY."""
-        return self.x[3:COORDINATES]
+        return self.estimate[3:COORDINATES]
 
     @property
     def lengths(self) -> Array:
         """(12,) m."""
-        return self.x[COORDINATES:SEEN]
+        return self.estimate[COORDINATES:SEEN]
 
     @property
     def rates(self) -> Array:
         """(22,) rad/s."""
-        return self.x[self.velocity + 3 : self.velocity + COORDINATES]
+        return self.estimate[self.velocity + 3 : self.velocity + COORDINATES]
 
     def deviations(self) -> Array:
         """(2, 22) standard deviations of the angles, rad, and their rates, rad/s."""
@@ -151,6 +163,7 @@ class WholeBodyEkf:
     def settle(self) -> None:
         """After a time without frames: keep posture, lengths and biases, forget how it moved and how sure it was."""
         self.x[self.velocity :] = 0.0
+        self.estimate[self.velocity :] = 0.0
         kept = self.P[COORDINATES : self.velocity, COORDINATES : self.velocity].copy()
         self._start_covariance()
         self.P[COORDINATES : self.velocity, COORDINATES : self.velocity] = kept

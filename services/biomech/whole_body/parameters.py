@@ -76,13 +76,14 @@ def length_covariance(lengths: Array, spread: float) -> Array:
 class CameraNoise:
     """What the camera is believed."""
 
-    variance: float = 2e-3
-    """m^2 per axis of a tracked centre. Far above the white noise: centres wander along their bones. [K]"""
-    along: float = 0.0
-    """More along the bone that leads to a centre, in squares of that bone. [K]"""
+    variance: float = 8e-4
+    """m^2 per axis of a tracked centre. Above the white noise: offsets are not all constant. [K]"""
+    along: float = 0.1
+    """More along the bone that leads to a centre, in squares of that bone: centres slide along bones for seconds,
+    which white noise of the same size would not say. [K]"""
     inferred: float = 25.0
     """Factor on the variance of an inferred centre. [K]"""
-    gate: float = 9.0
+    gate: float = 6.0
     """Squared innovation of a centre, in variances, from which its variance grows by the square. Leaving it out
     altogether is worse. [K]"""
     swap_scale: float = 0.05
@@ -103,17 +104,17 @@ class ProcessNoise:
     of the trunk; both sides share. `held`: a jerk constant over each frame, rad^2/s^6 (eq. 6). [K]
     """
 
-    hip_flexion: float = 1000.0
-    hip_adduction: float = 300.0
+    hip_flexion: float = 2000.0
+    hip_adduction: float = 60.0
     hip_rotation: float = 30.0
-    knee: float = 1000.0
-    clavicle: float = 10.0
-    shoulder: float = 100.0
-    shoulder_rotation: float = 10.0
-    elbow: float = 100.0
-    base_translation: float = 300.0
-    base_rotation: float = 100.0
-    trunk: float = 30.0
+    knee: float = 5000.0
+    clavicle: float = 5.0
+    shoulder: float = 20.0
+    shoulder_rotation: float = 2.0
+    elbow: float = 20.0
+    base_translation: float = 60.0
+    base_rotation: float = 20.0
+    trunk: float = 10.0
     held: bool = False
 
     def densities(self) -> Array:
@@ -157,11 +158,10 @@ class SoftPriors:
     spread_deg: dict[str, float] = field(
         default_factory=lambda: {
             "hip_internal_rotation": 10.0, "shoulder_internal_rotation": 12.0, "hip_adduction": 10.0,
-            "trunk_flexion": 15.0, "clavicle_elevation": 8.0,
+            "trunk_flexion": 15.0, "clavicle_elevation": 8.0, "pelvis_tilt": 12.0,
         }
     )  # fmt: skip
-    """Spread of such an angle in movement. Where only flexions are reported, adduction and trunk are better left out:
-    they cost the knee 1.6 deg. [K]"""
+    """Spread of such an angle in movement. [K]"""
     weight: float = 30.0
     """Variance of one frame's prior at 30 Hz, in squares of the spread. [K]"""
 

@@ -34,11 +34,13 @@ def expect(x: Array, biased: bool, tree: Tree, update: Update) -> None:
 def advance(
     x: Array, P: Array, velocity: int, dt: float, density: Array, held: bool, share: float,
     centres: Array, state: Indices, swap_scale: float, swap_most: float, swap_share: float,
-    tree: Tree, columns: Columns, noise: Noise, priors: Priors, bounds: Bounds, update: Update,
+    tree: Tree, columns: Columns, noise: Noise, priors: Priors, wide: Bounds, bounds: Bounds, update: Update,
+    estimate: Array,
 ) -> tuple[bool, int]:  # fmt: skip
     """One frame, in place: whether the legs were exchanged back, and how many bounds are active.
 
-    centres (15, 3) m and state (15,) may come back exchanged; swap_share 0 never exchanges.
+    centres (15, 3) m and state (15,) may come back exchanged; swap_share 0 never exchanges. x goes on within the `wide`
+    bounds; estimate (n,) is x within `bounds`.
     """
     biased = velocity > SEEN
     if dt > 0.0:
@@ -48,4 +50,6 @@ def advance(
         expect(x, biased, tree, update)
         swapped = unswap(centres, state, update.innovation, swap_scale, swap_most, swap_share)
     fuse(x, P, biased, centres, state, share, tree, columns, noise, priors, update)
-    return swapped, project(x, P, bounds)
+    project(x, P, wide)
+    estimate[:] = x
+    return swapped, project(estimate, P, bounds)

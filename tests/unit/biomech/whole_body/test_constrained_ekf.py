@@ -84,6 +84,7 @@ def test_bounds_are_always_met(person) -> None:
     low, high = per_angle(LIMITS_DEG).T
     active = 0
     for ekf in run(WholeBodyEkf(start), person, frames):
+        assert (ekf.estimate[3:25] == ekf.angles).all()
         assert (ekf.angles >= low).all()
         assert (ekf.angles <= high).all()
         assert (np.abs(ekf.lengths / start.lengths - 1.0) <= 0.2 + 1e-12).all()
@@ -120,7 +121,7 @@ def test_an_inferred_centre_weighs_less(person) -> None:
         states[CENTRE_NAMES.index("ankle_right")] = state
         ekf.advance(0.0, frame, states)
         bent.append(ekf.x[KNEE] - person.standing()[KNEE])
-    assert 0.0 < bent[1] < 0.2 * bent[0]
+    assert 0.0 < bent[1] < 0.4 * bent[0]
 
 
 def test_a_jump_is_believed_less(person) -> None:

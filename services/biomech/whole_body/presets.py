@@ -1,0 +1,33 @@
+"""Named settings of the filter, and what stands behind each."""
+
+import numpy as np
+
+from services.biomech.whole_body.constrained_ekf import OURS, FilterSettings
+from services.biomech.whole_body.parameters import (
+    NO_PRIORS,
+    CameraNoise,
+    ProcessNoise,
+    StartNoise,
+)
+
+PUBLISHED_VARIANCE = 0.0052
+"""m^2, average measurement variance of the paper (section 3.4)."""
+
+PUBLISHED_CAMERA = CameraNoise(variance=PUBLISHED_VARIANCE, along=0.0, inferred=1.0, gate=0.0, swap_share=0.0)
+"""One constant R, whatever the camera says of a centre."""
+
+FLAT_PROCESS = ProcessNoise.of_groups(np.full(11, 100.0))
+"""The same white jerk for every coordinate: what can be said without any recording."""
+
+CORRECTED = FilterSettings(PUBLISHED_CAMERA, FLAT_PROCESS, NO_PRIORS, constrained=True, margin=0.0)
+"""The paper's filter with its constraint put right, and nothing else of ours."""
+
+UNCONSTRAINED = FilterSettings(PUBLISHED_CAMERA, FLAT_PROCESS, NO_PRIORS, constrained=False)
+
+TASKS = {
+    "any": OURS,
+}
+"""Settings by what is done. `any` was chosen over four tasks at once and is what a session starts with."""
+
+PAPER_BIAS = StartNoise(bias_std=(0.037, 0.067, 0.022))
+"""Offsets as large as the paper's own camera had."""
