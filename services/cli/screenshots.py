@@ -5,6 +5,7 @@ import sys
 import tempfile
 import time
 from collections.abc import Callable
+from dataclasses import dataclass
 from pathlib import Path
 
 from selenium.webdriver import Chrome
@@ -25,6 +26,9 @@ SHORT = "synthetic:walk?speed=1.2&seed=4&duration=40"
 """Over soon, so that there is a report to show."""
 LONG = ("synthetic:walk?speed=1.15&seed=1&duration=300", "synthetic:walk?speed=0.7&asymmetry=0.25&seed=2&duration=300")
 RECORDED = "neura_s02_walk"
+KNEE = "synthetic:walk?worn=1&speed=1.1&seed=4&duration=300"
+EXERCISE = "synthetic:knee?seed=2&duration=300"
+TIMED = "synthetic:tug?attempts=3&stroll=8&seed=4"
 PATIENCE_S = 120
 
 
@@ -47,26 +51,44 @@ def main() -> int:
 
 
 def _take_all(page: Chrome, url: str, settings: BusSettings, folder: Path) -> None:
-    def take(name: str, path: str, ready: Callable[[], bool]) -> None:
-        page.get("about:blank")
-        page.get(url + path)
-        WebDriverWait(page, PATIENCE_S).until(lambda _: ready(), name)
-        time.sleep(9.0 if name == "live" else 1.5)
-        page.save_screenshot(str(folder / f"{name}.png"))
-        out.print(f"  {folder / name}.png")
-
-    def shown(selector: str, text: str) -> bool:
-        return any(text in each.text for each in page.find_elements(By.CSS_SELECTOR, selector))
-
+    camera = _Camera(page, url, folder)
+    live_now, finished, shown = camera.is_live, camera.is_finished, camera.shown
     with Bus.open(settings, "screenshots") as bus:
-        finished = live.start_session(bus, SHORT, None).session
-        walking = [live.start_session(bus, spec, 1.0).session for spec in (*LONG, *_recorded())]
-    live_path, report_path = f"/#/sessions/{walking[0]}", f"/#/sessions/{finished}"
-    take("sessions", "/", lambda: shown(".card .chip", "Live"))
-    take("live", live_path, lambda: shown(".session-head .chip", "Live") and not shown(".numbers td", "–"))
-    take("report", report_path, lambda: shown(".session-head .chip", "Finished") and shown(".files", "raw"))
-    take("system", "/#/system", lambda: shown("tbody", "imu/"))
-    take("api", "/docs", lambda: shown("#api", "/v1/sessions"))
+        walk, timed = (live.start_session(bus, spec, None).session for spec in (SHORT, TIMED))
+        now = (LONG[0], KNEE, EXERCISE, *LONG[1:], *_recorded())
+        lower_body, knee, exercise, *_ = [live.start_session(bus, spec, 1.0).session for spec in now]
+    camera.take("live", f"/#/sessions/{lower_body}", lambda: live_now() and not shown(".numbers td", "–"))
+    camera.take("live_knee", f"/#/sessions/{knee}", lambda: live_now() and shown(".knee-label", "°"))
+    camera.take("live_exercise", f"/#/sessions/{exercise}", lambda: live_now() and shown(".counter dd", "/min"))
+    camera.take("sessions", "/", lambda: shown(".card .chip", "Live"))
+    camera.take("report", f"/#/sessions/{walk}", finished)
+    camera.take("report_timed", f"/#/sessions/{timed}", lambda: finished() and shown("th", "Walk back"))
+    camera.take("system", "/#/system", lambda: shown("tbody", "imu/"))
+    camera.take("api", "/docs", lambda: shown("#api", "/v1/sessions"))
+
+
+@dataclass(frozen=True)
+class _Camera:
+    page: Chrome
+    url: str
+    folder: Path
+
+    def take(self, name: str, path: str, ready: Callable[[], bool]) -> None:
+        self.page.get("about:blank")
+        self.page.get(self.url + path)
+        WebDriverWait(self.page, PATIENCE_S).until(lambda _: ready(), name)
+        time.sleep(9.0 if name.startswith("live") else 1.5)
+        self.page.save_screenshot(str(self.folder / f"{name}.png"))
+        out.print(f"  {self.folder / name}.png")
+
+    def shown(self, selector: str, text: str) -> bool:
+        return any(text in each.text for each in self.page.find_elements(By.CSS_SELECTOR, selector))
+
+    def is_live(self) -> bool:
+        return self.shown(".session-head .chip", "Live")
+
+    def is_finished(self) -> bool:
+        return self.shown(".session-head .chip", "Finished") and self.shown(".files", "raw")
 
 
 def _recorded() -> list[str]:

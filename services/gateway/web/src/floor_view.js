@@ -153,6 +153,7 @@ class Card {
     say(this.title, session.title);
     say(this.code, session.patient ?? "unassigned");
     say(this.word, word);
+    this.word.title = word;
     this.word.dataset.tone = tone;
     this.node.dataset.tone = tone;
     factsOf(session).forEach(([name, value], place) => {

@@ -159,6 +159,7 @@ export class LiveView {
       this.heard(status.age_s);
     },
     gait_event(event) {
+      if (this.task === "knee_flexion") return;
       for (const chart of this.charts) chart.rolling.mark(event);
     },
     stride(stride) {
@@ -179,6 +180,7 @@ export class LiveView {
   arrange({ sensors, task }) {
     if (this.arranged) return;
     this.arranged = true;
+    this.task = task;
     this.strip.node.hidden = task !== "timed_up_and_go";
     this.counter.node.hidden = task !== "knee_flexion";
     this.strides.hidden = task === "knee_flexion";

@@ -3,7 +3,7 @@ import { el, say } from "./dom.js";
 import { degrees, number } from "./units.js";
 import { jointName } from "./words.js";
 
-const LONGEST_PAUSE_S = 5;
+const LONGEST_PAUSE_S = 10;
 
 export class RepetitionCounter {
   constructor() {
