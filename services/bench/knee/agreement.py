@@ -5,6 +5,7 @@ from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
+from scipy import stats
 
 Array = NDArray[np.float64]
 
@@ -31,6 +32,7 @@ class BlandAltman(NamedTuple):
     slope: float
     intercept: float
     samples: int
+    bias_p: float  # that the true bias is zero, every sample taken for independent as in the paper
 
 
 def errors(estimate: Array, truth: Array) -> Errors:
@@ -60,7 +62,7 @@ def bland_altman(estimate: Array, truth: Array) -> BlandAltman:
     r = float(np.corrcoef(measured, estimated)[0, 1])
     return BlandAltman(
         bias, bias - LIMITS_SD * spread, bias + LIMITS_SD * spread, r * r, float(slope), float(intercept),
-        len(difference),
+        len(difference), _no_bias(bias, spread, len(difference)),
     )  # fmt: skip
 
 
@@ -79,6 +81,13 @@ def per_trial(trials: Mapping[str, tuple[Array, Array]]) -> dict[str, Errors]:
 def unwrapped_error(estimate: Array, truth: Array) -> Array:
     """Estimate minus truth within (-pi, pi], rad: for joints that turn further than half a circle."""
     return np.asarray(np.angle(np.exp(1j * (estimate - truth))))
+
+
+def _no_bias(bias: float, spread: float, samples: int) -> float:
+    """Two-sided t test; 1 where neither bias nor spread is there."""
+    if spread == 0.0:
+        return 1.0 if bias == 0.0 else 0.0
+    return float(2.0 * stats.t.sf(abs(bias) * np.sqrt(samples) / spread, samples - 1))
 
 
 def _differences(estimate: Array, truth: Array) -> tuple[Array, Array]:

@@ -1,7 +1,6 @@
-"""The band's own claims: simplified against conventional filter, bias by window, cost (figures 5 and 6, table 1)."""
+"""The band's own claims: simplified against conventional filter, bias by window (figures 5 and 6)."""
 
-import time
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from typing import NamedTuple
 
 import numpy as np
@@ -90,33 +89,29 @@ def largest_difference(samples: Sequence[PlanarSample]) -> float:
     return max(abs(wrapped(value)) for value in difference.tolist())
 
 
-class Cost(NamedTuple):
-    """s of processor time for one sample; states of one filter."""
-
-    conventional_s: float
-    simplified_s: float
-    conventional_states: int = 2
-    simplified_states: int = 1
-
-
-def cost(samples: Sequence[PlanarSample], repeats: int = 25) -> Cost:
-    """Fastest of several runs of both, in turn; the simplified one pays for learning its biases (table 1)."""
-    dt_s = 1.0 / LITERAL.rate_hz
-
-    def seconds(step: Callable[[PlanarSample, float], float | None]) -> float:
-        begin = time.thread_time()
-        for sample in samples:
-            step(sample, dt_s)
-        return (time.thread_time() - begin) / len(samples)
-
-    timed = [(seconds(ConventionalKnee().step), seconds(SimplifiedKnee().step)) for _ in range(repeats)]
-    return Cost(min(t[0] for t in timed), min(t[1] for t in timed))
-
-
 def synthetic(motion: Motion, seed: int) -> list[PlanarSample]:
     """A noisy leg at the paper's 20 Hz with the paper's biases."""
     leg = record(motion, DURATION_S, LITERAL.rate_hz, NOISY, seed)
     return planar(leg.rate, leg.force, FLEXION_AXES, UP)
+
+
+class Traces(NamedTuple):
+    """Knee angles (n,), rad, at the paper's rate; NaN while a filter does not answer."""
+
+    truth: Array
+    conventional: Array
+    simplified: Array
+    ours: Array
+    ours_std: Array
+
+
+def traces(motion: Motion, seed: int) -> Traces:
+    """Both published filters and our band on the same samples (figure 6)."""
+    leg = record(motion, DURATION_S, LITERAL.rate_hz, NOISY, seed)
+    samples, band = planar(leg.rate, leg.force, FLEXION_AXES, UP), KneeBand(FLEXION_AXES, UP)
+    readings = [band.step(rate, force, 1.0 / LITERAL.rate_hz) for rate, force in zip(leg.rate, leg.force, strict=True)]
+    ours = np.array([[reading.flexion, reading.flexion_std] for reading in readings])
+    return Traces(leg.flexion, run_conventional(samples), run_simplified(samples), ours[:, 0], ours[:, 1])
 
 
 def bias_curves(seed: int = 0) -> dict[str, Array]:

@@ -4,16 +4,23 @@ import contextlib
 import importlib.util
 import io
 import time
+from collections.abc import Callable
+from functools import partial
 from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 from scipy.spatial.transform import Rotation
 
+from services.bench.knee.hinge_peer import heading_between, tie_headings
+from services.bench.knee.orientation_filters import FILTERS
 from services.bench.knee.recordings import KneeRecording
 from services.biomech.two_sensor_knee.mcgrath import knee_flexion, segment_frame
 
 Array = NDArray[np.float64]
+
+START = 100
+"""Sample at which headings are made equal once where an orientation in one common world is known."""
 
 
 class PeerResult(NamedTuple):
@@ -30,16 +37,11 @@ def missing(*libraries: str) -> str | None:
     return f"not installed: {', '.join(absent)}" if absent else None
 
 
-def orientations(recording: KneeRecording) -> tuple[Array, Array]:
-    """R_world_from_sensor (n, 3, 3) of thigh and shank by VQF without magnetometer; world z up."""
-    from vqf import VQF
-
-    matrices = []
-    for s in range(2):
-        rate = np.ascontiguousarray(recording.rate[:, s])
-        quat = VQF(1.0 / recording.rate_hz).updateBatch(rate, np.ascontiguousarray(recording.force[:, s]))["quat6D"]
-        matrices.append(Rotation.from_quat(quat, scalar_first=True).as_matrix())
-    return matrices[0], matrices[1]
+def orientations(recording: KneeRecording, by: str = "VQF") -> tuple[Array, Array]:
+    """R_world_from_sensor (n, 3, 3) of thigh and shank by one of FILTERS; world z up."""
+    filtered, _ = FILTERS[by]
+    thigh, shank = (filtered(recording.rate[:, s], recording.force[:, s], recording.rate_hz) for s in range(2))
+    return thigh, shank
 
 
 def mcgrath(recording: KneeRecording) -> PeerResult:
@@ -47,6 +49,19 @@ def mcgrath(recording: KneeRecording) -> PeerResult:
     begin = time.thread_time()
     thigh, shank = orientations(recording)
     angle, axes = knee_flexion(thigh, shank, recording.rate[:, 0], recording.rate[:, 1])
+    return PeerResult(angle, axes, (time.thread_time() - begin) / len(angle))
+
+
+def mcgrath_as_measured(recording: KneeRecording) -> PeerResult:
+    """The published method on orientations in one common world that came with the recording.
+
+    Raises:
+        ValueError: the recording has none.
+    """
+    if recording.orientations is None:
+        raise ValueError(f"{recording.name} has no orientations of its own")
+    begin = time.thread_time()
+    angle, axes = knee_flexion(*recording.orientations, recording.rate[:, 0], recording.rate[:, 1])
     return PeerResult(angle, axes, (time.thread_time() - begin) / len(angle))
 
 
@@ -58,6 +73,20 @@ def olsson_axis(recording: KneeRecording) -> Array:
     with contextlib.redirect_stdout(io.StringIO()):  # it prints each iteration
         first, second = jointAxisEstHingeOlsson(*arrays)
     return np.stack([np.ravel(first), np.ravel(second)])
+
+
+def with_hinge(recording: KneeRecording, by: str = "VQF") -> PeerResult:
+    """One of FILTERS; axis by principal components and heading by the hinge over the whole recording.
+
+    Where orientations came with the recording they tell the heading once, at the start.
+    """
+    begin = time.thread_time()
+    thigh, shank = orientations(recording, by)
+    start = None
+    if recording.orientations is not None:
+        start = heading_between(thigh[START], shank[START], *(known[START] for known in recording.orientations))
+    relative, axes = tie_headings(thigh, shank, recording.rate, recording.rate_hz, start)
+    return PeerResult(_twist(relative, axes), axes, (time.thread_time() - begin) / len(thigh))
 
 
 def qmt_heading(recording: KneeRecording) -> PeerResult:
@@ -94,3 +123,14 @@ def dfjimu_mekf(recording: KneeRecording) -> PeerResult:
 def _twist(R_thigh_from_shank: Array, axes: Array) -> Array:
     R = segment_frame(axes[0]).T @ R_thigh_from_shank @ segment_frame(axes[1])
     return np.arctan2(R[:, 1, 0] - R[:, 0, 1], R[:, 0, 0] + R[:, 1, 1])
+
+
+METHODS: dict[str, tuple[tuple[str, ...], Callable[[KneeRecording], PeerResult]]] = {
+    "McGrath": ((), mcgrath_as_measured),
+    "McGrath on VQF": (("vqf",), mcgrath),
+    **{f"{name} + hinge": ((library,), partial(with_hinge, by=name)) for name, (_, library) in FILTERS.items()},
+    "VQF, Olsson axis, qmt heading": (("vqf", "qmt"), qmt_heading),
+    "dfjimu MEKF": (("dfjimu",), dfjimu_mekf),
+}
+"""By name: the libraries it needs, and what runs it."""
+LITERAL = "McGrath"

@@ -1,5 +1,8 @@
 """Recordings of thigh and shank sensor with a measured knee, each as plain arrays."""
 
+import csv
+import gzip
+from pathlib import Path
 from typing import NamedTuple
 
 import numpy as np
@@ -35,6 +38,9 @@ class KneeRecording(NamedTuple):
     flexion: Array  # (n,) rad
     holds: Mask  # (n,) the truth can be believed
     axes: Array | None  # (2, 3) the true axis in each sensor, up to a common sign
+    orientations: tuple[Array, Array] | None = (
+        None  # R_world_from_sensor (n, 3, 3) of both in one world, not from the truth
+    )
 
 
 def weygers(trial: str) -> KneeRecording:
@@ -104,7 +110,36 @@ def from_manifest(spec: str, side: Side) -> KneeRecording:
     n = min(len(rows[0]), len(rows[1]), len(flexion))
     samples = np.stack([np.array(rows[0][:n]), np.array(rows[1][:n])], axis=1)
     flexion = np.asarray(flexion[:n])
-    return KneeRecording(spec, rate_hz, samples[:, :, :3], samples[:, :, 3:], flexion, np.isfinite(flexion), None)
+    return KneeRecording(
+        spec, rate_hz, samples[:, :, :3], samples[:, :, 3:], flexion, np.isfinite(flexion), None,
+        delivered_orientations(spec, side, n),
+    )  # fmt: skip
+
+
+DELIVERED = {
+    "fan_knee_drop_landing_left": ("fan_knee_drop_landing_left", "imu_thigh_{side}.csv.gz", "imu_shank_{side}.csv.gz"),
+    "alborno_sub03_sts1": (
+        "alborno_sub03_sit_to_stand", "sts1_imu_thigh_{side}.csv.gz", "sts1_imu_shank_{side}.csv.gz"
+    ),
+    "neura_s02_walk": ("neura_s02_walk", "imu_thigh_{side}.csv.gz", "imu_ankle_{side}.csv.gz"),
+    "neura_s02_walk_midshank": ("neura_s02_walk", "imu_thigh_{side}.csv.gz", "imu_shank_{side}.csv.gz"),
+}  # fmt: skip
+"""Folder and files of thigh and shank that hold the orientations of the sensors' maker, magnetometer included."""
+
+
+def delivered_orientations(spec: str, side: Side, count: int) -> tuple[Array, Array] | None:
+    """R_world_from_sensor (count, 3, 3) of thigh and shank by the maker's own filter; None where it is not known."""
+    if spec not in DELIVERED:
+        return None
+    folder, *files = DELIVERED[spec]
+    thigh, shank = (_orientations_in(find_data(folder) / file.format(side=side[0])) for file in files)
+    return thigh[:count], shank[:count]
+
+
+def _orientations_in(path: Path) -> Array:
+    with gzip.open(path, "rt") as file:
+        rows = [[float(row[f"q_{part}"]) for part in "wxyz"] for row in csv.DictReader(file)]
+    return np.asarray(Rotation.from_quat(np.array(rows), scalar_first=True).as_matrix())
 
 
 def clock_lag(recording: KneeRecording, parts: int) -> Array:

@@ -1,5 +1,6 @@
 """Scores of a causal knee angle against a truth with its own clock."""
 
+from enum import StrEnum
 from typing import NamedTuple
 
 import numpy as np
@@ -31,12 +32,24 @@ class KneeScore(NamedTuple):
     within_two_std: float  # share of the errors, offset removed, within twice their claimed deviation
 
 
-def run_knee(recording: KneeRecording, parameters: KneeAxisParameters, *, warm: bool = False) -> tuple[Array, KneeAxis]:
-    """Our outputs (n, 8) and the estimator at the end; `warm` has it see the recording once before."""
-    estimator = KneeAxis(parameters)
-    if warm:
-        estimator.run(recording.rate, recording.force, 1.0 / recording.rate_hz)
-    return estimator.run(recording.rate, recording.force, 1.0 / recording.rate_hz), estimator
+class Pass(StrEnum):
+    """What the estimator has seen before the samples that are scored."""
+
+    COLD = "cold"  # nothing: causal from the first sample
+    SECOND = "second pass"  # these samples, taken once more with what was found in them
+    WARM = "warm"  # the same sensors in the same motion at another time
+
+
+def run_knee(
+    recording: KneeRecording, parameters: KneeAxisParameters, seen: Pass = Pass.COLD
+) -> tuple[Array, KneeAxis]:
+    """Our outputs (n, 8) and the estimator at the end."""
+    estimator, dt_s = KneeAxis(parameters), 1.0 / recording.rate_hz
+    if seen is not Pass.COLD:
+        estimator.run(recording.rate, recording.force, dt_s)
+    if seen is Pass.SECOND and estimator.has_angle:
+        estimator.rewind(recording.rate, recording.force, dt_s)
+    return estimator.run(recording.rate, recording.force, dt_s), estimator
 
 
 def score(

@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 from scipy.spatial.transform import Rotation
 
 from services.bench.knee import peers
+from services.bench.knee.hinge_peer import heading_between
 from services.bench.knee.legs import FLEXION_AXIS, Motion, Sensors, orientation, record, segment_from_sensor, walking
 from services.bench.knee.recordings import KneeRecording
 from services.bench.knee.scores import FLEXION, VALID, score
@@ -126,8 +127,7 @@ def _levelled_by_vqf(recording: KneeRecording, worlds: list[Array]) -> list[Arra
     """VQF, its headings made equal once, at the end of standing: the common frame that the paper asks for."""
     thigh, shank = peers.orientations(recording)
     k = int(RATE_HZ)
-    turn = thigh[k] @ worlds[0][k].T @ worlds[1][k] @ shank[k].T
-    heading = np.arctan2(turn[1, 0] - turn[0, 1], turn[0, 0] + turn[1, 1])
+    heading = heading_between(thigh[k], shank[k], worlds[0][k], worlds[1][k])
     return [thigh, Rotation.from_rotvec([0.0, 0.0, heading]).as_matrix() @ shank]
 
 
