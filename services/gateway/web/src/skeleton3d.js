@@ -26,8 +26,8 @@ const DIRECTIONS = { side: [0, 0.07, 1], front: [1, 0.07, 0], back: [-1, 0.07, 0
 const VIEW_ANGLE_DEG = 30;
 /** What fits into the picture: a whole body, or legs alone, which need more width to be stretched out in sitting. m */
 const FRAMES = {
-  body: { height: 1.94, width: 1.3, middle: 0.8, seatedWidth: 1.3 },
-  legs: { height: 1.2, width: 1.02, middle: 0.46, seatedWidth: 1.28 },
+  body: { height: 1.94, width: 1.3, middle: 0.8, seatedWidth: 1.3, seatedRise: 0 },
+  legs: { height: 1.2, width: 1.02, middle: 0.46, seatedWidth: 1.28, seatedRise: 0.13 },
 };
 const FRAME_S = 0.05;
 
@@ -114,10 +114,12 @@ export class Skeleton3d {
     return Math.max(this.frameOf.height, width / this.camera.aspect);
   }
 
+  /** A leg that sits is wider and lower than one that stands. */
   zoom() {
-    const { width, seatedWidth } = this.frameOf;
+    const { width, seatedWidth, seatedRise } = this.frameOf;
     const seated = this.shownHeight(width) / this.shownHeight(seatedWidth);
     this.camera.zoom = 1 + (seated - 1) * this.stage.sitting;
+    this.scene.position.y = seatedRise * this.stage.sitting;
     this.camera.updateProjectionMatrix();
   }
 
