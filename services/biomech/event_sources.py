@@ -11,6 +11,11 @@ def worn_segments(hubs: Iterable[HubDescription]) -> frozenset[Segment]:
     return frozenset(sensor.segment for hub in hubs for sensor in hub.sensors)
 
 
+def whole_legs(worn: Set[Segment]) -> tuple[Side, ...]:
+    """Legs with a sensor on both thigh and shank: those that can be knees of their own."""
+    return tuple(side for side in Side if {Segment(f"thigh_{side}"), Segment(f"shank_{side}")} <= worn)
+
+
 def event_source(worn: Set[Segment], side: Side) -> EventSource:
     """The best source of one leg's events.
 

@@ -3,9 +3,11 @@
 import sys
 
 from services.bus.runner import run_node_service
-from services.estimation.lower_body.warm_up import warm_up
+from services.estimation.knee.warm_up import warm_up as warm_up_knee
+from services.estimation.lower_body.warm_up import warm_up as warm_up_lower_body
 from services.estimation.node import build
 
 if __name__ == "__main__":
-    warm_up()
+    warm_up_lower_body()
+    warm_up_knee()
     sys.exit(run_node_service("estimation", build))

@@ -192,6 +192,7 @@ class KneeParameters:
     kept_s: float = 30.0  # s of samples from before the axis is believed: a timed walk from a chair and back
     good_axis_std: float = 0.12  # rad (7 deg); an axis that well known is taken at once, a worse one is waited with
     longest_wait_s: float = 3.0  # s that a believed axis is waited with: axes of soft legs never become that good
+    sense_s: float = 6.0  # s that an axis is known without its sense until standing is asked for: motion tells it in 3
     together_s: float = 5.0  # s for which the first leg waits for the other, where both wear sensors
     doubt_s: float = 1.0  # s after a sensor's return, a gap or the first sample in which the angle is not valid yet
     instant_share: float = 0.75  # of a sample interval that must lie between instants where not everyone speaks
@@ -201,7 +202,11 @@ class KneeParameters:
     straightest_share: float = 0.02  # of the samples that are straighter: outliers
     population_quality: float = 0.4  # best quality of a zero that is a population's, as WalkingParameters
     placement_decides: float = 0.5  # |cos| between axis and the direction the placement tells, for it to give the sign
-    votes: int = 10  # looks, half a second apart, in which the leg moves and a misplacement is seen, until it is named
+    votes: float = (
+        10.0  # looks, half a second apart, in which the leg moves and a misplacement shows, until it is named
+    )
+    votes_remembered: float = 120.0  # looks; a leg that was seen the right way up within the last minute is not swapped
+    contrary_votes: float = 0.1  # share of looks that may have shown the contrary
     look_s: float = 0.5  # s
     moving_rate: float = 0.5  # rad/s of the knee that a look must have seen
     axis_change: float = 0.17  # rad (10 deg) by which an axis must have moved for the calibration to be sent again

@@ -5,7 +5,8 @@ from typing import Any
 
 from schemas.rhythm import KnownRhythm
 from schemas.session import SessionDescription, WalkPath
-from schemas.vocabulary import ESTIMATORS, Task
+from schemas.vocabulary import ESTIMATORS, KNEE_ESTIMATORS, LOWER_BODY_ESTIMATORS, Task
+from services.biomech.event_sources import whole_legs, worn_segments
 from services.ingest.errors import InvalidOption
 
 LONGEST_WALKWAY_M = 100.0
@@ -31,7 +32,7 @@ class Choices:
             raise InvalidOption(f"walkway {self.walkway_m:g} m: give more than 0 and at most {LONGEST_WALKWAY_M:g} m")
 
     def applied(self, description: SessionDescription) -> SessionDescription:
-        """A source's description with what was chosen."""
+        """A source's description with what was chosen. Raises InvalidOption for an estimator without its sensors."""
         chosen: dict[str, Any] = {
             "estimator": self.estimator,
             "walk_path": self.walk_path,
@@ -39,6 +40,11 @@ class Choices:
             "task": self.task,
             "walkway_m": self.walkway_m,
         }
+        if self.estimator in KNEE_ESTIMATORS and not whole_legs(worn_segments(description.hubs)):
+            raise InvalidOption(
+                f"estimator {self.estimator!r} needs a sensor on the thigh and one on the shank of one leg; assign the "
+                f"sensors anew or choose one of {', '.join(LOWER_BODY_ESTIMATORS)}"
+            )
         return description.model_copy(update={name: value for name, value in chosen.items() if value is not None})
 
 

@@ -8,7 +8,8 @@ from typing import Annotated, Literal
 from pydantic import BaseModel, ConfigDict, Field, ValidationError
 
 from schemas.session import Anthropometry, Placement, WalkPath
-from schemas.vocabulary import ESTIMATORS, Segment, Task
+from schemas.vocabulary import ESTIMATORS, KNEE_ESTIMATORS, Segment, Task
+from services.biomech.event_sources import whole_legs
 from services.ingest.axes import Axes, rotation_from_axes
 from services.ingest.errors import InvalidManifest, MissingFile, UnknownSegment, UnreadableFile
 from services.ingest.units import reference_unit, scale_to_si
@@ -195,6 +196,11 @@ def _check_meaning(manifest: Manifest, where: str) -> None:
             raise InvalidManifest(f"{where}: standing ends before it starts ({standing.from_s} .. {standing.to_s} s)")
     for sensor in sensors:
         _check_sensor(manifest, sensor, f"{where}, sensor {sensor.name}")
+    if manifest.estimator in KNEE_ESTIMATORS and not whole_legs({Segment(sensor.segment) for sensor in sensors}):
+        raise InvalidManifest(
+            f"{where}: estimator {manifest.estimator!r} needs a sensor on the thigh and one on the shank of one leg; "
+            "correct the segments, or leave the estimator out"
+        )
     for reference in manifest.reference:
         _check_reference(reference, f"{where}, reference {reference.file}")
     _check_unique(where, "reference channel", [name for entry in manifest.reference for name in channel_names(entry)])

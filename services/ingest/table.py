@@ -1,4 +1,4 @@
-"""Number columns out of a csv or csv.gz file. A bad row is counted, many bad rows are an error that names the place."""
+"""Number columns out of a csv, csv.gz or mat file. A bad row is counted, many are an error that names the place."""
 
 import csv
 import difflib
@@ -22,9 +22,12 @@ from services.ingest.errors import (
     WrongFieldCount,
     place,
 )
+from services.ingest.matlab import read_columns
 
 MOST_BAD_SHARE = 0.01
 """Share of malformed rows above which a file is refused; one bad row is always forgiven."""
+
+MATLAB_SUFFIX = ".mat"
 
 MISSING_WORDS = frozenset({"", "na", "n/a", "null", "none", "-"})
 """Fields that say `no value`, besides nan and inf. Not an error: radios lose samples, cameras lose markers."""
@@ -82,6 +85,10 @@ class _BadRows:
 def read_table(path: Path, columns: Sequence[str], layout: CsvFormat = CsvFormat()) -> Table:
     """Read the named columns. Raises a SourceError that names file, line and column."""
     try:
+        if path.suffix == MATLAB_SUFFIX:
+            values = read_columns(path, columns)
+            values[~np.isfinite(values)] = np.nan
+            return Table(path, tuple(columns), np.arange(len(values)), values, 0)
         with _open_text(path) as text:
             return _read(path, text, columns, layout)
     except FileNotFoundError as error:

@@ -1,5 +1,6 @@
 """What every estimator of one knee says, and what it can be told."""
 
+from math import atan2
 from typing import NamedTuple, Protocol
 
 import numpy as np
@@ -9,7 +10,8 @@ from services.flow.node import State
 
 Array = NDArray[np.float64]
 
-UP = np.array([0.0, 1.0, 0.0])
+STEEPEST = 0.95
+"""Upward part of the flexion axis above which a leg, lying on its side, has no heading."""
 
 
 class KneeSample(NamedTuple):
@@ -52,6 +54,10 @@ class Evidence(NamedTuple):
 
 class KneeEstimator(Protocol):
     """One knee, sample by sample."""
+
+    @property
+    def kept_s(self) -> float:
+        """s of samples before the angle is believed that `again` can use."""
 
     @property
     def is_ready(self) -> bool:
@@ -103,10 +109,24 @@ def frame_from_axis_and_up(flexion_axis: Array, up: Array) -> Array:
     return np.stack([np.cross(y, z), y, z])
 
 
-def inclination_of(R_segment_from_sensor: Array, up: Array) -> float:
-    """Forward inclination of a segment, rad, from the vertical (3,) in its sensor: atan2 of its x and y parts.
+def thigh_motion(flexion_axis: Array, thigh_up: Array, up: Array, rate: Array) -> tuple[float, float, float]:
+    """Forward inclination rad, its rate and the turn about the vertical to the left, rad/s, of a thigh.
 
-    Rz(a) carries the vertical (sin a, cos a) of the segment's x and y to the world's y; z is nearly level.
+    All (3,) in its sensor: the axis, up the segment, the vertical, and the angular velocity without bias. In the
+    segment's frame Rz(a) carries the vertical (sin a, cos a, 0) to the world's y; x and y are scaled alike, which
+    the angle does not see. With R = Ry(h) Rx(l) Rz(a) and c = sin l the upward part of the right axis z:
+    w.y = dh + c da and w.z = c dh + da, so dh = (w.y - c w.z) / (1 - c^2). Without c a swing that leans would turn.
+    Numbers, not arrays: this is done for every sample.
     """
-    x, y, _ = (R_segment_from_sensor @ up).tolist()
-    return float(np.arctan2(x, y))
+    ax, ay, az = flexion_axis.tolist()
+    sx, sy, sz = thigh_up.tolist()
+    ux, uy, uz = up.tolist()
+    wx, wy, wz = rate.tolist()
+    along = sx * ax + sy * ay + sz * az
+    yx, yy, yz = sx - along * ax, sy - along * ay, sz - along * az
+    # x = y x z with z = -axis
+    forward = ux * (yz * ay - yy * az) + uy * (yx * az - yz * ax) + uz * (yy * ax - yx * ay)
+    inclination = atan2(forward, ux * yx + uy * yy + uz * yz)
+    forward_rate, c = -(wx * ax + wy * ay + wz * az), -(ux * ax + uy * ay + uz * az)
+    turn_rate = (ux * wx + uy * wy + uz * wz - c * forward_rate) / (1.0 - c * c) if abs(c) < STEEPEST else 0.0
+    return inclination, forward_rate, turn_rate

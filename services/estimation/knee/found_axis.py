@@ -17,7 +17,7 @@ from services.estimation.knee.estimator import (
     Kept,
     KneeSample,
     frame_from_axis_and_up,
-    inclination_of,
+    thigh_motion,
 )
 from services.estimation.knee.mounting import leftward, upward
 from services.estimation.parameters import KneeParameters
@@ -55,7 +55,13 @@ class FoundAxis:
         self._straight: float | None = None
         self._declared: Array | None = None
         self._since_declared_s = 0.0
+        self._senseless_s = 0.0
         self._last = KneeSample(0.0, pi, 0.0, 0.0, 0.0, 0.0, False)
+
+    @property
+    def kept_s(self) -> float:
+        """s of samples before the angle is believed that `again` can use."""
+        return self._parameters.kept_s
 
     @property
     def is_ready(self) -> bool:
@@ -70,13 +76,14 @@ class FoundAxis:
     @property
     def wish(self) -> str:
         """What the person should do for the angle to be believed."""
-        return STAND if self._is_axis_known(self._axis.reading()) else BEND
+        return STAND if self._senseless_s > self._parameters.sense_s else BEND
 
     def step(self, kept: Kept) -> KneeSample:
         """Take one sample."""
         reading = self._advance(kept)
         believed = self._axis.has_angle and reading.is_valid
         self._believed_s = self._believed_s + kept.dt_s if believed else 0.0
+        self._senseless_s = self._senseless_s + kept.dt_s if self._is_axis_known(reading) and not believed else 0.0
         is_good = reading.axis_std <= self._parameters.good_axis_std
         self._ready = believed and (self._ready or is_good or self._believed_s >= self._parameters.longest_wait_s)
         self._last = self._read(reading, kept)
@@ -123,12 +130,13 @@ class FoundAxis:
         flexion = reading.flexion
         if reading.datum is Datum.START and self._straight is not None:
             flexion = wrapped(flexion - self._straight)
-        up, thigh = axis.up[0], kept.rate[0] - axis.gyro_bias[0]
-        frame = frame_from_axis_and_up(axis.axes[0], self._thigh_up(reading.datum))
-        forward_rate = float(frame[2] @ thigh)
-        inclination = inclination_of(frame, up) + axis.parameters.sample_delay_s * forward_rate
+        rate = kept.rate[0] - axis.gyro_bias[0]
+        inclination, forward_rate, turn_rate = thigh_motion(
+            axis.axes[0], self._thigh_up(reading.datum), axis.up[0], rate
+        )
+        inclination += axis.parameters.sample_delay_s * forward_rate
         return KneeSample(
-            flexion, reading.flexion_std, reading.flexion_rate, inclination, forward_rate, float(up @ thigh), True
+            flexion, reading.flexion_std, reading.flexion_rate, inclination, forward_rate, turn_rate, True
         )
 
     def _thigh_up(self, datum: Datum) -> Array:
@@ -172,7 +180,7 @@ class FoundAxis:
         """Everything that changes."""
         return {
             "axis": self._axis.snapshot(),
-            "times_s": [self._believed_s, self._since_declared_s],
+            "times_s": [self._believed_s, self._since_declared_s, self._senseless_s],
             "ready": self._ready,
             "straight": self._straight,
             "declared": None if self._declared is None else pack_array(self._declared),
@@ -182,7 +190,7 @@ class FoundAxis:
     def restore(self, state: State) -> None:
         """Inverse of `snapshot`."""
         self._axis.restore(state["axis"])
-        self._believed_s, self._since_declared_s = state["times_s"]
+        self._believed_s, self._since_declared_s, self._senseless_s = state["times_s"]
         self._ready, self._straight = state["ready"], state["straight"]
         self._declared = None if state["declared"] is None else unpack_array(state["declared"])
         self._last = KneeSample(*state["last"])

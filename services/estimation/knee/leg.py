@@ -37,7 +37,7 @@ class Leg:
         self.estimator = estimator
         self._rows = slice(first, first + 2)
         self._watch = PlacementWatch(worn.side, worn.sensors, parameters)
-        self._doubt_ns, self._kept_ns = round(parameters.doubt_s * 1e9), round(parameters.kept_s * 1e9)
+        self._doubt_ns, self._kept_ns = round(parameters.doubt_s * 1e9), round(estimator.kept_s * 1e9)
         self._silent_ns = round(silent_after_s * 1e9)
         self._last_ns: int | None = None
         self._doubted_ns = 0

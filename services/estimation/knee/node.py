@@ -46,7 +46,10 @@ class KneeNode:
         p = self._parameters = parameters or EstimationParameters()
         worn = worn_legs(description)
         if not worn:
-            raise ValueError("no leg wears a sensor on both thigh and shank: a knee estimator has nothing to do")
+            raise ValueError(
+                f"{description.estimator} needs a sensor on the thigh and one on the shank of one leg: "
+                "assign the sensors anew, or choose an estimator of the lower body"
+            )
         self._intake = Intake(description, p, used_by_knees(description))
         sensors, silent_s = self._intake.sensors, p.checks.silent_after_s
         self._instants = CommonInstants([sensor.rate_hz for sensor in sensors], silent_s, p.knee.instant_share)

@@ -1,9 +1,10 @@
 """Sensors worn otherwise than declared, named when the motion has shown it again and again.
 
-Every half second in which the knee moves is a look; what a look shows clearly is a vote for or against. A misplacement
-is named after `votes` votes for it without as many against, and withdrawn when as many have spoken against it. A whole
-leg that points up (a raised leg of somebody who lies) looks like swapped sensors both upside down: that counts as
-nothing.
+Every half second in which the knee moves is a look; what a look shows clearly is a vote for or against. How sensors are
+worn does not change with the posture, so a misplacement is named after `votes` votes for it with next to none against
+in the last minute or so of motion: a raised leg looks like a swap, but not for long enough. It is withdrawn once more
+speaks against it than for it. Where upward axes are declared, a leg that points up (swapped sensors, both upside down)
+counts as nothing.
 """
 
 from collections.abc import Sequence
@@ -33,7 +34,7 @@ class PlacementWatch:
         self._parameters = parameters
         self._upward = [upward(sensor) for sensor in sensors]
         self._outward = [_outward(sensor) for sensor in sensors]
-        self._votes = dict.fromkeys(WATCHED, 0)
+        self._for, self._against = dict.fromkeys(WATCHED, 0.0), dict.fromkeys(WATCHED, 0.0)
         self._seen: list[Misplacement] = []
         self._waited_s = 0.0
         self._has_moved = False
@@ -45,8 +46,8 @@ class PlacementWatch:
 
     @property
     def suspects_swap(self) -> bool:
-        """Some look has shown swapped sensors, and none since the contrary."""
-        return self._votes[Misplacement.SWAPPED] > 0
+        """More looks have shown swapped sensors than the contrary."""
+        return self._for[Misplacement.SWAPPED] > self._against[Misplacement.SWAPPED]
 
     def is_due(self, flexion_rate: float, dt_s: float) -> bool:
         """Whether this sample, dt_s after the one before, ends an interval in which the knee has moved."""
@@ -59,13 +60,18 @@ class PlacementWatch:
 
     def look(self, evidence: Evidence) -> None:
         """Take what the estimator knows now."""
-        shown = self._shown(evidence)
-        most = self._parameters.votes
-        for kind, vote in shown.items():
-            self._votes[kind] = min(most, max(0, self._votes[kind] + vote))
-            if self._votes[kind] == most and kind not in self._seen:
+        p = self._parameters
+        kept = 1.0 - 1.0 / p.votes_remembered
+        for kind, vote in self._shown(evidence).items():
+            if vote == 0:
+                continue
+            self._for[kind] = kept * self._for[kind] + (vote > 0)
+            self._against[kind] = kept * self._against[kind] + (vote < 0)
+            # Half a vote less: the first ones are a little forgotten.
+            is_shown = self._for[kind] >= p.votes - 0.5
+            if is_shown and self._against[kind] <= p.contrary_votes * self._for[kind] and kind not in self._seen:
                 self._seen = [each for each in WATCHED if each in (*self._seen, kind)]
-            elif self._votes[kind] == 0 and kind in self._seen:
+            elif self._against[kind] > self._for[kind] and kind in self._seen:
                 self._seen.remove(kind)
 
     def _shown(self, evidence: Evidence) -> dict[Misplacement, int]:
@@ -91,7 +97,7 @@ class PlacementWatch:
     def snapshot(self) -> State:
         """Votes, and the interval under way."""
         return {
-            "votes": [self._votes[kind] for kind in WATCHED],
+            "votes": [[self._for[kind], self._against[kind]] for kind in WATCHED],
             "seen": [kind.value for kind in self._seen],
             "waited_s": self._waited_s,
             "has_moved": self._has_moved,
@@ -99,7 +105,8 @@ class PlacementWatch:
 
     def restore(self, state: State) -> None:
         """Inverse of `snapshot`."""
-        self._votes = dict(zip(WATCHED, state["votes"], strict=True))
+        self._for = {kind: votes[0] for kind, votes in zip(WATCHED, state["votes"], strict=True)}
+        self._against = {kind: votes[1] for kind, votes in zip(WATCHED, state["votes"], strict=True)}
         self._seen = [Misplacement(kind) for kind in state["seen"]]
         self._waited_s, self._has_moved = state["waited_s"], state["has_moved"]
 
