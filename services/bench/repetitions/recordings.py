@@ -4,6 +4,7 @@ import math
 
 import numpy as np
 
+from schemas.tasks import Repetition
 from schemas.vocabulary import Side
 from services.bench.repetitions.runs import of_reference, through_chain
 from services.bench.repetitions.scores import mean_absolute
@@ -18,7 +19,7 @@ MEASURED = {
 """Recordings with an optical knee. Nothing was chosen on them."""
 WALKS = {
     "walk with turns (NeuRA)": "neura_s02_walk",
-    "stroke survivor's treadmill": "moving_reality_pp11",
+    "the same, sensors on mid-shank": "neura_s02_walk_midshank",
     "synthetic, slow": "synthetic:walk?speed=0.5&seed=211&duration=60",
     "synthetic, usual": "synthetic:walk?speed=1.1&seed=212&duration=60",
     "synthetic, fast": "synthetic:walk?speed=1.5&seed=213&duration=60",
@@ -38,14 +39,8 @@ def measured_rows() -> list[Row]:
             rows.append(Row(f"{name}: {error}"[:120], None, "", None, None, None))
             continue
         ours = [one for one in run.of(side) if one.valid]
-        seen_from = min((one.start_ns for one in run.of(side)), default=0) / 1e9 - NEAR_S
-        theirs = [one for one in of_reference(run, side) if one.valid and one.start_ns / 1e9 >= seen_from]
-        pairs = [
-            (one, other)
-            for other in theirs
-            for one in ours
-            if abs(one.turn_ns - other.turn_ns) < NEAR_S * 1e9
-        ]  # fmt: skip
+        theirs = [one for one in of_reference(run, side) if one.valid]
+        pairs = _pairs(ours, theirs)
         ranges = [range_of(one) - range_of(other) for one, other in pairs]
         turns = [(one.turn_ns - other.turn_ns) / 1e9 for one, other in pairs]
         starts = [(one.start_ns - other.start_ns) / 1e9 for one, other in pairs]
@@ -58,6 +53,21 @@ def measured_rows() -> list[Row]:
             informative(f"{name}: start, mean absolute difference", mean_absolute(starts), "s", detail=True),
         ]
     return rows
+
+
+def _pairs(ours: list[Repetition], theirs: list[Repetition]) -> list[tuple[Repetition, Repetition]]:
+    """Each with the one of the others that turns next to it, nearest first, none twice."""
+    near = sorted(
+        (abs(one.turn_ns - other.turn_ns), i, k) for i, one in enumerate(ours) for k, other in enumerate(theirs)
+    )
+    taken: tuple[set[int], set[int]] = set(), set()
+    pairs = []
+    for apart_ns, i, k in near:
+        if apart_ns < NEAR_S * 1e9 and i not in taken[0] and k not in taken[1]:
+            taken[0].add(i)
+            taken[1].add(k)
+            pairs.append((ours[i], theirs[k]))
+    return pairs
 
 
 def walking_rows() -> list[Row]:

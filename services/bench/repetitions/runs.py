@@ -7,6 +7,7 @@ from numpy.typing import NDArray
 
 from schemas.gait import Stride
 from schemas.imu import ReferenceBatch
+from schemas.kinematics import JointState
 from schemas.rhythm import Rhythm
 from schemas.tasks import Repetition
 from schemas.vocabulary import LOWER_BODY, Side, Task
@@ -15,6 +16,7 @@ from services.bench.repetitions.exercises import Array
 from services.cli.assembly import build_chain
 from services.ingest.source import iter_messages, open_source
 from services.ingest.synthetic.knee_flexion import SyntheticKnee
+from services.segmentation.batch import INDEX
 from services.segmentation.node import build
 from services.segmentation.repetitions.knee_watch import MISSING, KneeWatch
 from services.segmentation.repetitions.parameters import RepetitionParameters
@@ -30,6 +32,8 @@ class Run:
     rhythm: list[tuple[int, float, bool]] = field(default_factory=list)  # ns, rad, locked
     reference: list[tuple[int, list[float | None]]] = field(default_factory=list)
     channels: list[str] = field(default_factory=list)
+    seen_from_ns: dict[Side, int] = field(default_factory=dict)
+    """When each knee was valid for the first time."""
 
     def of(self, side: Side) -> list[Repetition]:
         """Those of one knee."""
@@ -56,6 +60,10 @@ def through_chain(spec: str, estimator: str | None = None) -> Run:
                 run.repetitions.append(payload)
             elif isinstance(payload, Stride):
                 run.strides += 1
+            elif isinstance(payload, JointState) and payload.captured_ns:
+                for side in Side:
+                    if payload.valid[INDEX[f"knee_flexion_{side}"]]:
+                        run.seen_from_ns.setdefault(side, payload.captured_ns[0])
             elif isinstance(payload, Rhythm):
                 run.rhythm += zip(payload.captured_ns, payload.phase, payload.locked, strict=True)
     return run
@@ -75,14 +83,14 @@ def of_exact_angles(session: SyntheticKnee) -> list[Repetition]:
 
 
 def of_reference(run: Run, side: Side) -> list[Repetition]:
-    """What the segmenter makes of a measured knee, whose thigh is not known."""
+    """What the segmenter makes of a measured knee, whose thigh is not known, from when on the estimate is valid."""
     at = run.channels.index(f"knee_flexion_{side}")
     parameters = RepetitionParameters()
     knee, found = KneeWatch(side, parameters), list[Repetition]()
     last: tuple[int, float] | None = None
     for captured_ns, values in run.reference:
         angle = values[at]
-        if angle is None:
+        if angle is None or captured_ns < run.seen_from_ns.get(side, 0):
             continue
         if last is not None and captured_ns - last[0] > parameters.longest_gap_s * 1e9:
             found += knee.interrupt(MISSING)

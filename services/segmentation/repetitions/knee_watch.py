@@ -16,7 +16,7 @@ ENDED = "the session ended before the knee was back"
 SHORT = "too quick to be a repetition"
 ENDS_APART = "it began or ended away from the resting side"
 PARTIAL = "less than half of the usual range"
-STEP = "a step: the thigh swung forward"
+STEP = "a step: the thigh swung"
 NOT_BACK = {
     Closed.OTHER_POSTURE: "the person sat down or stood up",
     Closed.HELD: "the knee came to rest elsewhere",
@@ -104,7 +104,7 @@ class KneeWatch:
         usual, reach = self._usual_range(), range_of(made)
         if made.end_ns - made.start_ns < p.shortest_s * 1e9:
             return SHORT
-        if shape.thigh_swing > p.step_swing:
+        if abs(shape.thigh_swing) > max(p.step_floor, p.step_share * reach):
             return STEP
         if abs(made.start_angle - made.end_angle) > p.ends_share * reach:
             return ENDS_APART

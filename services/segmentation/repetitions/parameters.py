@@ -48,9 +48,11 @@ class RepetitionParameters:
     posture_change: float = 0.6
     """rad (34 deg) by which the thigh's inclination may differ between both ends; sitting down turns it by 60 and
     more, squats and slides bring it back (proposal)."""
-    step_swing: float = 0.4
-    """rad (23 deg) by which the thigh is further forward while the knee extends than while it flexes, from which on
-    it was a step: 40 deg in walking; exercises take the same way back (proposal)."""
+    step_share: float = 0.35
+    """share of the knee's range by which the thigh's inclination, half-way, differs between extending and flexing, from
+    which on it was a step. Walking makes 0.55 to 0.75 of it; an exercise takes the same way back, and pedals make 0.22."""
+    step_floor: float = 0.15
+    """rad that this must be at least; a loosely worn thigh sensor makes less."""
 
     onset_share: float = 0.1
     """share of a way's largest speed below which it has not begun or is over."""
