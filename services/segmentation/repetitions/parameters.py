@@ -50,7 +50,7 @@ class RepetitionParameters:
     more, squats and slides bring it back (proposal)."""
     step_share: float = 0.35
     """share of the knee's range by which the thigh's inclination, half-way, differs between extending and flexing, from
-    which on it was a step. Walking makes 0.55 to 0.75 of it; an exercise takes the same way back, and pedals make 0.22."""
+    which on it was a step. Walking makes 0.55 to 0.75; exercises take the same way back, and pedals make 0.22."""
     step_floor: float = 0.15
     """rad that this must be at least; a loosely worn thigh sensor makes less."""
 
