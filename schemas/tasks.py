@@ -1,13 +1,19 @@
 """What a person did of a task: phases of a timed test, repetitions of an exercise."""
 
-from pydantic import Field
+from typing import Any
+
+from pydantic import Field, model_validator
 
 from schemas.payload import Payload, SessionTime
 from schemas.vocabulary import Side, Task, TaskPhaseKind
 
 
 class TaskPhase(Payload):
-    """One phase of a timed test. Sent when it begins, with `end_ns` null, and again when it has ended."""
+    """One phase of a timed test. Sent when it begins, with `end_ns` null, and again when it has ended.
+
+    A phase that was given up ends where it was last seen, with `end_std_s` null. What was done in it stands in the
+    message that ends it.
+    """
 
     task: Task
     attempt: int = Field(ge=0, description="count of this task's attempts since the session started")
@@ -16,6 +22,18 @@ class TaskPhase(Payload):
     start_std_s: float = Field(ge=0, description="s, one standard deviation of the start")
     end_ns: SessionTime | None
     end_std_s: float | None = Field(ge=0, description="s, one standard deviation of the end")
+    largest_turn_rate: float | None = Field(ge=0, description="rad/s, of the heading, either way, over 0.4 s")
+    largest_thigh_rate: float | None = Field(
+        ge=0, description="rad/s, of the thighs' inclination, in rising or sitting"
+    )
+    steps: int | None = Field(ge=0, description="number of steps of both legs; null unless both shanks are seen")
+
+    @model_validator(mode="before")
+    @classmethod
+    def _of_an_older_writer(cls, fields: Any) -> Any:
+        """Earlier ones told the times alone."""
+        unknown = {"largest_turn_rate": None, "largest_thigh_rate": None, "steps": None}
+        return {**unknown, **fields} if isinstance(fields, dict) else fields
 
 
 class Repetition(Payload):

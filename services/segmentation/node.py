@@ -17,6 +17,7 @@ from services.segmentation.intake import JOINTS_FROM, MOTION_FROM, RHYTHM_FROM, 
 from services.segmentation.pairing import Pairing, Together
 from services.segmentation.parameters import SegmentationParameters
 from services.segmentation.repetitions.segmenter import RepetitionSegmenter
+from services.segmentation.timed_up_and_go.segmenter import TimedUpAndGoSegmenter
 
 DEFAULTS = SegmentationParameters()
 
@@ -45,6 +46,8 @@ def segmenters(description: SessionDescription, parameters: SegmentationParamete
     found: dict[str, Segmenter] = {"gait": GaitSegmenter(description, parameters)}
     if description.task is Task.KNEE_FLEXION:
         found["repetitions"] = RepetitionSegmenter()
+    if description.task is Task.TIMED_UP_AND_GO:
+        found["timed_up_and_go"] = TimedUpAndGoSegmenter(description)
     return found
 
 
@@ -84,7 +87,9 @@ class SegmentationNode:
         batch = self._intake.take(together.joints, together.rhythm)
         if batch is None:
             return []
-        return [output for segmenter in self._segmenters.values() for output in segmenter.take(batch)]
+        outputs = [output for segmenter in self._segmenters.values() for output in segmenter.take(batch)]
+        # Each segmenter looks at the whole batch in turn; by time, their outputs mix as if samples came one by one.
+        return sorted(outputs, key=lambda output: output.captured_ns)
 
     def rejections(self) -> list[Rejection]:
         """Samples that were not used."""
