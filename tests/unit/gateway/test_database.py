@@ -42,6 +42,16 @@ def test_migrating_again_keeps_the_data(database, made):
         assert records.get_session(session, "a").metrics.final
 
 
+def test_sessions_from_before_tasks_were_walks(database, made):
+    with database.transaction() as session:
+        records.record_start(session, made.describe("a"))
+    database.migrate("0002")
+    database.migrate()
+    with database.transaction() as session:
+        row = records.get_session(session, "a")
+        assert (row.task, row.walkway_m, row.calibration) == ("walk", None, None)
+
+
 def test_commits_survive_a_power_cut_and_readers_do_not_wait(database):
     with database.engine.connect() as connection:
         pragmas = {

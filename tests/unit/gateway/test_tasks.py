@@ -8,11 +8,13 @@ import pytest
 
 from schemas.signals import REPETITION, TASK_PHASE
 from schemas.tasks import Repetition, TaskPhase
-from schemas.vocabulary import Misplacement, Side, Task, TaskPhaseKind
+from schemas.vocabulary import KNEE_ESTIMATORS, LOWER_BODY_ESTIMATORS, Misplacement, Side, Task, TaskPhaseKind
 from services.flow.message import Envelope, Message, Stream
 from services.gateway.bus_feed import BusFeed, BusLink
+from services.gateway.control import SYNTHETIC_SOURCES
 from services.gateway.live import views
 from services.gateway.live.memory import Memory
+from services.ingest.source import open_source
 from tests.unit.gateway.walk import calibration_of, metrics_at
 
 SOURCE = "synthetic:walk?seed=3"
@@ -59,6 +61,25 @@ def test_the_task_is_the_operator_s_choice_and_else_the_source_s(client, control
 def test_a_task_or_walkway_that_is_none_is_refused(client, control, wish):
     assert start(client, **wish).status_code == HTTPStatus.UNPROCESSABLE_ENTITY
     assert control.started == []
+
+
+def test_sources_and_estimators_say_what_is_worn(client):
+    offer = client.get("/v1/sources").json()
+    fitting = {each["worn"]: {name["name"] for name in offer["estimators"] if name["worn"] == each["worn"]}
+               for each in offer["sources"] if each["worn"]}  # fmt: skip
+    assert fitting["knee"] == set(KNEE_ESTIMATORS)
+    assert fitting["lower_body"] == set(LOWER_BODY_ESTIMATORS)
+    assert {source["task"] for source in offer["sources"] if source["kind"] == "synthetic"} == set(Task)
+    assert {source["worn"] for source in offer["sources"] if source["kind"] == "recording"} == {None}
+
+
+def test_every_simulated_source_is_one_that_an_ingest_knows():
+    for source in SYNTHETIC_SOURCES:
+        description = open_source(source.id).describe()
+        assert description.task == source.task
+        knees = description.estimator in KNEE_ESTIMATORS
+        assert knees == (source.worn == "knee"), source.title
+        assert source.duration_s in (None, pytest.approx(description.duration_s, abs=0.1))
 
 
 def test_a_session_tells_its_task_as_it_runs(client, gateway, made):
