@@ -16,9 +16,14 @@ def seel_axis(rate: Array) -> Array:
     axis stays open.
     """
 
+    square = np.sum(rate**2, axis=2)
+
+    def across(s: int, angles: Array) -> Array:
+        along = rate[:, s] @ _direction(*angles[2 * s : 2 * s + 2])
+        return np.asarray(np.sqrt(np.maximum(square[:, s] - along**2, 0.0)))
+
     def misfit(angles: Array) -> Array:
-        across = [np.linalg.norm(np.cross(rate[:, s], _direction(*angles[2 * s : 2 * s + 2])), axis=1) for s in (0, 1)]
-        return np.asarray(across[0] - across[1])
+        return across(0, angles) - across(1, angles)
 
     best = min((least_squares(misfit, start) for start in STARTS), key=lambda solution: float(solution.cost))
     return np.stack([_direction(*best.x[:2]), _direction(*best.x[2:])])

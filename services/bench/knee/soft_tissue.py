@@ -14,8 +14,9 @@ from services.bench.knee.hinge_peer import heading_between
 from services.bench.knee.legs import FLEXION_AXIS, Motion, Sensors, orientation, record, segment_from_sensor, walking
 from services.bench.knee.recordings import KneeRecording
 from services.bench.knee.scores import FLEXION, VALID, score
+from services.bench.knee.seel_axis import seel_axis
 from services.biomech.two_sensor_knee.knee_axis import KneeAxis
-from services.biomech.two_sensor_knee.mcgrath import knee_flexion
+from services.biomech.two_sensor_knee.mcgrath import flexion_angle, knee_flexion
 from services.biomech.two_sensor_knee.parameters import KneeAxisParameters
 
 Array = NDArray[np.float64]
@@ -28,6 +29,9 @@ SCORED_FROM_S = 9.0
 EVERY = 50
 """Samples between two looks at our axis."""
 OURS, LITERAL, ON_VQF = "ours", "McGrath, true orientations", "McGrath on VQF"
+SEEL = "Seel axis, true orientations"
+SEEL_SAMPLES = 300
+"""Of a trial that the axis without orientations is fitted to."""
 LATERAL, FORWARD = np.array([0.0, 0.0, 1.0]), np.array([1.0, 0.0, 0.0])
 
 
@@ -62,6 +66,7 @@ def run_trial(subject: int, trial: int) -> Trial:
     recording = KneeRecording(f"leg {subject}.{trial}", RATE_HZ, leg.rate, leg.force, leg.flexion, every, None)
     worlds = [orientation(motion, sensors, s, t).as_matrix() for s in range(2)]
     outcomes = {OURS: _ours(recording, true_axes, scored), LITERAL: _literal(recording, worlds, true_axes, scored)}
+    outcomes[SEEL] = _seel(recording, worlds, true_axes, scored)
     if peers.missing("vqf") is None:
         outcomes[ON_VQF] = _literal(recording, _levelled_by_vqf(recording, worlds), true_axes, scored)
     return Trial(subject, angles.mean(axis=0), angles.std(axis=0), outcomes)
@@ -121,6 +126,18 @@ def _literal(recording: KneeRecording, worlds: list[Array], true_axes: Array, sc
     errors = np.median(_line_angles(axes, true_axes[scored]), axis=0)
     both = [score(sense * angle, recording.flexion, scored, recording.holds) for sense in (-1.0, 1.0)]
     return Outcome(min(one.unshifted.zero_mean_rmse for one in both), errors)
+
+
+def _seel(recording: KneeRecording, worlds: list[Array], true_axes: Array, scored: NDArray[np.bool_]) -> Outcome:
+    """The paper's comparison: the axis from the rates alone, the angle as published, the senses that agree best."""
+    axes = seel_axis(recording.rate[:: len(recording.rate) // SEEL_SAMPLES])
+    relative = np.swapaxes(worlds[1], 1, 2) @ worlds[0]
+    found = []
+    for sense in (-1.0, 1.0):
+        angle = flexion_angle(relative, axes[0], sense * axes[1])
+        found += [score(up * angle, recording.flexion, scored, recording.holds) for up in (-1.0, 1.0)]
+    errors = np.median(_line_angles(axes, true_axes[scored]), axis=0)
+    return Outcome(min(one.unshifted.zero_mean_rmse for one in found), errors)
 
 
 def _levelled_by_vqf(recording: KneeRecording, worlds: list[Array]) -> list[Array]:

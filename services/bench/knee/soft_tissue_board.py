@@ -21,7 +21,8 @@ PARAGRAPHS = [
     "motion is the standard deviation of the circumferential angle (eq. 5), axis error the median over the trial of "
     "the angle between the found axis and that of the bones, flexion error the zero-mean RMSE from 9 s on. The "
     "published method is given the true orientations (the paper's simulated sensors), or those of VQF with headings "
-    "made equal once, and sees the whole trial; ours runs from the first sample and is scored where valid.",
+    "made equal once, and sees the whole trial, as does the axis of Seel et al. (the paper's comparison). Ours runs "
+    "from the first sample and is scored where valid.",
     "Model: RMSE = constant + a (thigh motion) + b (axis error in the shank, the paper's frame B) + c (product) + one "
     "intercept per subject, restricted maximum likelihood. Published: 4.723, -0.235, -0.126, 0.023, adjusted R2 0.85, "
     "p = 0.004. There the factors came as people brought them and hardly explained the error; here they are drawn "
