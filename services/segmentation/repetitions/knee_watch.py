@@ -11,6 +11,7 @@ from services.segmentation.repetitions.shape import Shape, shape_of
 from services.segmentation.repetitions.trail import Sample, Trail
 
 MISSING = "samples are missing"
+SET_ANEW = "the angle was set anew"
 UNSEEN = "the knee was not seen for a while"
 ENDED = "the session ended before the knee was back"
 SHORT = "too quick to be a repetition"
@@ -36,8 +37,9 @@ class KneeWatch:
         self._count = 0
 
     def take(self, sample: Sample) -> list[Repetition]:
-        """The repetitions that this sample closes, at most one."""
+        """The repetitions that this sample closes."""
         p = self._parameters
+        broken = self.interrupt(SET_ANEW) if self._has_jumped(sample) else []
         self._trail.append(sample)
         point = Point(sample.captured_ns, *self._trail.recent_mean(p.smoothing_s))
         excursion = self._detector.step(point, *self._least_ways())
@@ -45,23 +47,33 @@ class KneeWatch:
         needed_ns = self._detector.needed_from_ns
         if needed_ns is not None:
             self._trail.forget_before(needed_ns - round(p.margin_s * 1e9))
-        return found
+        return broken + found
+
+    def _has_jumped(self, sample: Sample) -> bool:
+        """Whether the angle is further from the last one than its velocity takes it: the estimator changed its mind."""
+        last = self._trail.newest
+        if last is None:
+            return False
+        moved = max(abs(sample.rate), abs(last.rate)) * (sample.captured_ns - last.captured_ns) / 1e9
+        return abs(sample.angle - last.angle) > moved + self._parameters.jump
 
     def interrupt(self, because: str) -> list[Repetition]:
-        """Samples are missing from here on, or the session has ended. A repetition under way does not count."""
+        """What comes next does not belong to what came before.
+
+        A repetition under way does not count; that of a knee that has come back, but not yet rested, does.
+        """
         excursion = self._detector.break_off()
-        found = [] if excursion is None else [self._repetition(excursion, because)]
+        found: list[Repetition] = []
+        if excursion is not None:
+            come_back = abs(excursion.farthest.angle - excursion.end.angle)
+            is_back = come_back >= self._parameters.rested_share * excursion.way
+            found = [self._repetition(excursion, None if is_back else because)]
         self._trail.clear()
         return found
 
     def finish(self) -> list[Repetition]:
-        """The session has ended. A knee that had come back, but not rested, has done its last repetition."""
-        excursion = self._detector.break_off()
-        if excursion is None:
-            return []
-        come_back = abs(excursion.farthest.angle - excursion.end.angle)
-        is_back = come_back >= self._parameters.rested_share * excursion.way
-        return [self._repetition(excursion, None if is_back else ENDED)]
+        """The session has ended."""
+        return self.interrupt(ENDED)
 
     def _least_ways(self) -> tuple[float, float]:
         p = self._parameters
@@ -94,7 +106,7 @@ class KneeWatch:
             rejected_because=None,
         )
         because = because or self._flaw(made, shape)
-        if excursion.closed is Closed.BACK and because != STEP:
+        if because in (None, PARTIAL):
             self._ranges = [*self._ranges, range_of(made)][-self._parameters.memory :]
         self._count += 1
         return made if because is None else made.model_copy(update={"valid": False, "rejected_because": because})

@@ -45,6 +45,10 @@ class RepetitionParameters:
     longest_gap_s: float = 0.2
     """s without samples that a repetition may contain; one smoothing."""
 
+    jump: float = 0.15
+    """rad by which an angle may differ from where its velocity takes it; more is a new zero or axis, which would look
+    like a movement as soon as it reaches `turn_floor`."""
+
     posture_change: float = 0.6
     """rad (34 deg) by which the thigh's inclination may differ between both ends; sitting down turns it by 60 and
     more, squats and slides bring it back (proposal)."""

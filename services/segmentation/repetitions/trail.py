@@ -42,8 +42,10 @@ class Trail:
     def __init__(self) -> None:
         self._samples: list[Sample] = []
 
-    def __len__(self) -> int:
-        return len(self._samples)
+    @property
+    def newest(self) -> Sample | None:
+        """The last sample; None without any."""
+        return self._samples[-1] if self._samples else None
 
     def append(self, sample: Sample) -> None:
         """Add the newest sample."""

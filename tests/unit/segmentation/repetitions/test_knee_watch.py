@@ -141,6 +141,17 @@ def test_missing_samples_close_a_repetition():
     assert all(one.start_angle > one.turn_angle for one in made)
 
 
+def test_a_new_zero_is_no_movement():
+    whole = there_and_back(SEATED, 0.1, 2.0)
+    fed = samples(np.concatenate([held(SEATED, 2.0), *[whole] * 6]))
+    # At rest after the second, and on the way out of the fourth.
+    fed = [one._replace(angle=one.angle - 0.3 * (i >= 750) + 0.25 * (i >= 1150)) for i, one in enumerate(fed)]
+    knee = KneeWatch(Side.LEFT, RepetitionParameters())
+    made = [one for sample in fed for one in knee.take(sample)] + knee.finish()
+    halves = [knee_watch.SET_ANEW, knee_watch.ENDS_APART]
+    assert [one.rejected_because for one in made] == [None, None, None, *halves, None, None]
+
+
 def test_sitting_down_changes_the_resting_side():
     each = there_and_back(SEATED, STANDING, 2.0, hold_s=3.0)
     knees = np.concatenate([held(STANDING, 4.0), moved(STANDING, SEATED, 2.0), held(SEATED, 3.0), *[each] * 5])
