@@ -208,11 +208,18 @@ class PhaseOut(BaseModel):
     start_s: float = Field(ge=0, description="s of session time", examples=[5.12])
     start_std_s: float = Field(ge=0, description="s, one standard deviation", examples=[0.04])
     end_s: float | None = Field(description="s of session time; null while it runs", examples=[6.87])
-    end_std_s: float | None = Field(description="s, one standard deviation", examples=[0.05])
+    end_std_s: float | None = Field(
+        description="s, one standard deviation; null while it runs and when it was given up", examples=[0.05]
+    )
     duration_s: float | None = Field(description="s; null while it runs", examples=[1.75])
     duration_std_s: float | None = Field(
         description="s, one standard deviation: those of start and end, taken as independent", examples=[0.06]
     )
+    largest_turn_rate: float | None = Field(description="rad/s, of the heading, either way", examples=[1.9])
+    largest_thigh_rate: float | None = Field(
+        description="rad/s, of the thighs' inclination, in rising or sitting", examples=[2.1]
+    )
+    steps: int | None = Field(description="number of steps of both legs; null unless both are seen", examples=[None])
 
 
 class PhasesOut(BaseModel):

@@ -74,6 +74,9 @@ def _phase_out(phase: TaskPhase) -> PhaseOut:
         end_std_s=phase.end_std_s,
         duration_s=None if phase.end_ns is None else (phase.end_ns - phase.start_ns) / 1e9,
         duration_std_s=math.hypot(phase.start_std_s, phase.end_std_s or 0.0) if ended else None,
+        largest_turn_rate=phase.largest_turn_rate,
+        largest_thigh_rate=phase.largest_thigh_rate,
+        steps=phase.steps,
     )
 
 

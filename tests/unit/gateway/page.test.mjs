@@ -203,7 +203,9 @@ test("a repetition is measured the same way whichever end it rests at", () => {
 
 test("a timed test lasts from standing up until the person sits", () => {
   const phase = (name, start_s, end_s) => ({ phase: name, start_s, end_s, start_std_s: 0.03, end_std_s: 0.04 });
-  assert.deepEqual(extentOf([]), { from: null, to: null, spread_s: null });
+  assert.deepEqual(extentOf([]), { from: null, to: null, spread_s: null, given_up: false });
+  const given_up = extentOf([phase("sit_to_stand", 2, 3), { ...phase("walk_out", 3, 5), end_std_s: null }]);
+  assert.deepEqual([given_up.from, given_up.to, given_up.given_up], [2, null, true]);
   assert.equal(extentOf([phase("sit_to_stand", 2, 3), phase("walk_out", 3, null)]).to, null);
   const done = extentOf([phase("sit_to_stand", 2, 3), phase("turn_to_sit", 9, 12)]);
   assert.deepEqual([done.from, done.to], [2, 12]);
@@ -264,8 +266,9 @@ test("names are written for readers", () => {
   assert.equal(metricGroup({ name: "rhythm_distance_exemplar", side: "left" }), "sides");
   assert.equal(metricGroup({ name: "repetition_range", side: "left" }), "exercise");
   assert.equal(metricGroup({ name: "repetition_range_sd", side: "left" }), null);
-  assert.equal(metricGroup({ name: "tug_total", side: null }), "headlines");
-  assert.equal(metricName("tug_sit_to_stand"), "Stand up");
+  assert.equal(metricGroup({ name: "tug_time", side: null }), "headlines");
+  assert.equal(metricGroup({ name: "tug_turn_time", side: null }), "timed");
+  assert.equal(metricName("tug_time"), "Timed up and go");
   assert.equal(lastData(0.21), "last data 0.2 s ago");
 });
 

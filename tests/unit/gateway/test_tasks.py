@@ -24,6 +24,7 @@ def phase_of(kind: TaskPhaseKind, start_s: float, end_s: float | None, attempt: 
     return TaskPhase(
         task=Task.TIMED_UP_AND_GO, attempt=attempt, phase=kind, start_ns=round(start_s * 1e9), start_std_s=0.03,
         end_ns=None if end_s is None else round(end_s * 1e9), end_std_s=None if end_s is None else 0.04,
+        largest_turn_rate=1.5, largest_thigh_rate=None, steps=4,
     )  # fmt: skip
 
 
@@ -127,6 +128,7 @@ def test_phases_come_back_with_their_length_and_its_deviation(client, gateway):
     ended, running = told["phases"]
     assert (ended["phase"], ended["start_s"], ended["end_s"], ended["duration_s"]) == ("sit_to_stand", 5.0, 6.5, 1.5)
     assert math.isclose(ended["duration_std_s"], 0.05)
+    assert (ended["largest_turn_rate"], ended["largest_thigh_rate"], ended["steps"]) == (1.5, None, 4)
     assert (running["end_s"], running["duration_s"], running["duration_std_s"]) == (None, None, None)
 
 

@@ -178,10 +178,11 @@ function factsOf(session) {
 
 function timedFacts(phases) {
   const running = phases.find((phase) => phase.end_s === null);
-  const { from, to } = extentOf(phases);
+  const { from, to, given_up } = extentOf(phases);
   const total = to === null ? "–" : `${number(to - from, 1)} s`;
+  const over = given_up ? "Given up" : to === null ? "–" : "Done";
   return [
-    ["Part", running ? PHASES[running.phase] : to === null ? "–" : "Done"],
+    ["Part", running ? PHASES[running.phase] : over],
     ["Total", total],
   ];
 }

@@ -41,28 +41,38 @@ export class PhaseStrip {
   show(now_s) {
     for (const { phase, time, node } of this.parts) {
       const known = this.phases.get(phase);
-      node.dataset.state = !known ? "waiting" : known.end_s === null ? "running" : "done";
+      node.dataset.state = stateOfPart(known);
       say(time, known ? seconds((known.end_s ?? Math.max(now_s, known.start_s)) - known.start_s) : "–");
     }
-    const { from, to, spread_s } = extentOf([...this.phases.values()]);
-    say(this.total, from === null ? "–" : seconds((to ?? Math.max(now_s, from)) - from));
-    say(this.spread, spread_s === null ? "" : `± ${number(2 * spread_s, 1)} s`);
+    const { from, to, spread_s, given_up } = extentOf([...this.phases.values()]);
+    say(this.total, from === null || given_up ? "–" : seconds((to ?? Math.max(now_s, from)) - from));
+    say(this.spread, given_up ? "given up" : spread_s === null ? "" : `± ${number(2 * spread_s, 1)} s`);
   }
 
   words() {
     const running = this.parts.find(({ node }) => node.dataset.state === "running");
     if (running) return PHASES[running.phase];
+    if (extentOf([...this.phases.values()]).given_up) return "Given up";
     return this.phases.has("turn_to_sit") ? `Done in ${this.total.textContent}` : "";
   }
 }
 
+function stateOfPart(phase) {
+  if (!phase) return "waiting";
+  return phase.end_s === null ? "running" : isGivenUp(phase) ? "given-up" : "done";
+}
+
 const seconds = (value) => `${number(value, 1)} s`;
+
+/** A part that has an end but no deviation of it was not seen to its end. */
+export const isGivenUp = (phase) => phase.end_s !== null && phase.end_std_s === null;
 
 /** From the first start to the end of the last part; `to` is null, and so is the deviation, until that has ended. */
 export function extentOf(phases) {
   const first = phases.find((each) => each.phase === "sit_to_stand") ?? phases[0];
   const last = phases.find((each) => each.phase === "turn_to_sit");
-  if (!first) return { from: null, to: null, spread_s: null };
-  if (!last || last.end_s === null) return { from: first.start_s, to: null, spread_s: null };
-  return { from: first.start_s, to: last.end_s, spread_s: Math.hypot(first.start_std_s, last.end_std_s ?? 0) };
+  const given_up = phases.some(isGivenUp);
+  if (!first) return { from: null, to: null, spread_s: null, given_up };
+  if (!last || last.end_s === null || given_up) return { from: first.start_s, to: null, spread_s: null, given_up };
+  return { from: first.start_s, to: last.end_s, spread_s: Math.hypot(first.start_std_s, last.end_std_s), given_up };
 }

@@ -1,8 +1,8 @@
 // Timed tests of a session: one bar per attempt, its parts in seconds from standing up, and the same as a table.
 import { el, svg, table } from "./dom.js";
 import { Drawing, bottomAxis, text, ticksOf } from "./drawing.js";
-import { extentOf } from "./phase_strip.js";
-import { INK, PHASE_COLOURS, SOFT_INK } from "./palette.js";
+import { extentOf, isGivenUp } from "./phase_strip.js";
+import { INK, INVALID, PHASE_COLOURS, SOFT_INK } from "./palette.js";
 import { number } from "./units.js";
 import { PHASES } from "./words.js";
 
@@ -50,15 +50,17 @@ export class PhaseTimeline {
 function bar({ attempt, from, phases }, row, place) {
   const y = MARGIN.top + row * (ROW.height + ROW.gap) + ROW.gap / 2;
   const parts = phases.filter((phase) => phase.end_s !== null).flatMap((phase) => part(phase, from, y, place));
-  const edges = phases.filter((phase) => phase.end_s !== null).map((phase) => whisker(phase, from, y, place));
+  const edges = phases.filter((phase) => phase.end_std_s !== null).map((phase) => whisker(phase, from, y, place));
   return [text(0, y + ROW.height / 2 + 4, `Attempt ${attempt + 1}`, { fill: INK }), ...parts, ...edges];
 }
 
-function part({ phase, start_s, end_s, duration_s }, from, y, place) {
+function part(whole, from, y, place) {
+  const { phase, start_s, end_s, duration_s } = whole;
   const [left, right] = [place(start_s - from), place(end_s - from)];
   const middle = (left + right) / 2;
   const box = { x: left + 1, y, width: Math.max(1, right - left - 2), height: ROW.height, rx: 5 };
-  const block = svg("rect", { ...box, fill: PHASE_COLOURS[phase] ?? PHASE_COLOURS.turn });
+  const paint = isGivenUp(whole) ? { fill: "none", stroke: INVALID, "stroke-dasharray": "4 3" } : {};
+  const block = svg("rect", { ...box, fill: PHASE_COLOURS[phase], ...paint });
   const tip = svg("title");
   tip.append(`${PHASES[phase]}: ${number(duration_s, 2)} s`);
   block.append(tip);
@@ -79,14 +81,14 @@ function inWords({ attempt, phases, from, to }) {
   const parts = phases
     .filter((phase) => phase.end_s !== null)
     .map((phase) => `${PHASES[phase.phase]} ${number(phase.duration_s, 1)} s`);
-  const total = to === null ? "not finished" : `in all ${number(to - from, 1)} s`;
+  const total = to === null ? "not done to the end" : `in all ${number(to - from, 1)} s`;
   return `Attempt ${attempt + 1}: ${parts.join(", ")}; ${total}.`;
 }
 
-/** Seconds and their standard deviation, a row per attempt. */
-export function phaseTable(attempts) {
+/** Seconds and their standard deviation, a row per attempt; with several, `metrics` has their mean and its spread. */
+export function phaseTable(attempts, metrics = []) {
   const names = Object.keys(PHASES);
-  const rows = attempts.map(({ attempt, phases, from, to, spread_s }) =>
+  const rows = attempts.map(({ attempt, phases, from, to, spread_s, given_up }) =>
     el(
       "tr",
       {},
@@ -95,9 +97,16 @@ export function phaseTable(attempts) {
         const phase = phases.find((each) => each.phase === name);
         return seconds(phase?.duration_s ?? null, phase?.duration_std_s ?? null);
       }),
-      seconds(to === null ? null : to - from, spread_s),
+      given_up ? el("td", { class: "number quiet" }, "given up") : seconds(to === null ? null : to - from, spread_s),
     ),
   );
+  const means = [...names.map((name) => `tug_${name}_time`), "tug_time"].map((name) =>
+    metrics.find((metric) => metric.name === name && metric.spread !== null),
+  );
+  if (means.every(Boolean)) {
+    const cells = means.map(({ value, spread }) => seconds(value, spread));
+    rows.push(el("tr", { class: "mean-row" }, el("th", { scope: "row" }, `Mean of ${means[0].strides}`), ...cells));
+  }
   const columns = ["", ...names.map((name) => `${PHASES[name]}#`), "Total#"];
   return table(columns, el("tbody", {}, ...rows));
 }

@@ -6,7 +6,7 @@ import { metricName } from "./words.js";
 
 const SIDES = ["left", "right"];
 
-const isCount = ({ name }) => name.startsWith("strides_") || name.startsWith("repetitions_");
+const isCount = ({ name }) => /^(strides|repetitions)_/.test(name);
 
 /** A metric that rests on something, even if too little to be told. A count of nothing is not one. */
 export const isSeen = (metric) => metric.strides > 0 || (metric.value !== null && !isCount(metric));

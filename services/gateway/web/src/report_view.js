@@ -91,7 +91,7 @@ export class ReportView {
     if (this.disposed) return;
     if (metrics instanceof Error) fill(this.numbers, el("p", { class: "quiet" }, metrics.message));
     else this.showMetrics(metrics.metrics);
-    if (!(phases instanceof Error)) this.showPhases(phases.phases);
+    if (!(phases instanceof Error)) this.showPhases(phases.phases, metrics.metrics);
     if (!(repetitions instanceof Error) && repetitions.repetitions.length > 0)
       this.showRepetitions(repetitions.repetitions);
     if (!(curves instanceof Error) && this.walks) this.showCurves(curves.curves);
@@ -138,7 +138,7 @@ export class ReportView {
     this.exercise.hidden = false;
   }
 
-  showPhases(phases) {
+  showPhases(phases, metrics) {
     this.timed.hidden = phases.length === 0 && this.session.task !== "timed_up_and_go";
     if (this.timed.hidden) return;
     const meaning = phases.length > 0 ? "seconds ± one standard deviation" : "none was found";
@@ -148,7 +148,7 @@ export class ReportView {
     if (phases.length === 0) return;
     const attempts = attemptsOf(phases);
     const host = el("div", { class: "drawn" });
-    this.timed.append(host, phaseTable(attempts));
+    this.timed.append(host, phaseTable(attempts, metrics));
     this.charts.push(new PhaseTimeline(host, attempts));
   }
 

@@ -42,6 +42,11 @@ const METRICS = {
   repetition_peak_velocity: "Peak velocity",
   repetition_range_slope: "Trend of the range",
   repetition_tempo: "Tempo",
+  tug_time: "Timed up and go",
+  tug_turn_rate: "Largest turn rate",
+  tug_turn_to_sit_rate: "Largest turn rate before sitting",
+  tug_rise_rate: "Largest thigh rate in rising",
+  tug_steps: "Steps",
   strides_counted: "Strides counted",
   strides_turning: "Strides while turning",
   strides_rejected: "Strides left out",
@@ -50,22 +55,20 @@ const TIMED = "tug_";
 const RATIO = "_ratio_larger_to_smaller";
 const VARIATION = "_cv";
 const DEVIATION = "_sd";
-const HEADLINES = ["walking_speed", "cadence", "stride_length", "stride_time"];
+const TIMED_HEADLINES = ["tug_time", "tug_steps", "tug_rise_rate", "tug_turn_rate", "tug_turn_to_sit_rate"];
+const HEADLINES = [...TIMED_HEADLINES, "walking_speed", "cadence", "stride_length", "stride_time"];
 
 /** Name of a metric for the screen. */
 export function metricName(name) {
   for (const suffix of [RATIO, VARIATION, DEVIATION])
     if (name.endsWith(suffix)) return metricName(name.slice(0, -suffix.length));
-  if (name.startsWith(TIMED)) return timedName(name.slice(TIMED.length));
   return METRICS[name] ?? jointName(name)[0];
 }
-
-const timedName = (part) => PHASES[part.replace(/_(time|duration)$/, "")] ?? jointName(part)[0];
 
 /** Where a metric belongs in a report; null for those that the spread beside the mean says already. */
 export function metricGroup({ name, side }) {
   if (name.endsWith(DEVIATION)) return null;
-  if (name.startsWith(TIMED)) return side === null ? "headlines" : "sides";
+  if (name.startsWith(TIMED)) return TIMED_HEADLINES.includes(name) ? "headlines" : "timed";
   if (name.startsWith("repetition")) return name.endsWith(VARIATION) ? null : "exercise";
   if (name.endsWith(RATIO)) return "symmetry";
   if (name.startsWith("rhythm_side_")) return "legs";
@@ -82,8 +85,9 @@ export function qualityText(metrics, { datum, task }) {
   const count = (name) =>
     metrics.filter((metric) => metric.name === name).reduce((sum, metric) => sum + (metric.value ?? 0), 0);
   const told = ([name, words]) => (count(name) > 0 ? `${count(name)} ${words}` : null);
-  const counts = (task === "knee_flexion" ? REPETITION_COUNTS : STRIDE_COUNTS).map(told).filter(Boolean).join(", ");
-  const facts = [counts, datum ? `zero is ${datum}` : null].filter(Boolean);
+  const listed = (counts) => counts.map(told).filter(Boolean).join(", ");
+  const strides = listed(task === "knee_flexion" ? REPETITION_COUNTS : STRIDE_COUNTS);
+  const facts = [listed(ATTEMPT_COUNTS), strides, datum ? `zero is ${datum}` : null].filter(Boolean);
   return facts.length > 0 ? `Quality: ${facts.join("  ·  ")}` : "";
 }
 
@@ -92,6 +96,10 @@ const STRIDE_COUNTS = [
   ["strides_starting_or_stopping", "starting or stopping"],
   ["strides_turning", "while turning"],
   ["strides_rejected", "left out"],
+];
+const ATTEMPT_COUNTS = [
+  ["tug_attempts", "attempts completed"],
+  ["tug_attempts_aborted", "not seen to their end"],
 ];
 const REPETITION_COUNTS = [
   ["repetitions_counted", "repetitions count"],
