@@ -208,7 +208,7 @@ class KneeParameters:
     votes_remembered: float = 120.0  # looks; a leg that was seen the right way up within the last minute is not swapped
     contrary_votes: float = 0.1  # share of looks that may have shown the contrary
     look_s: float = 0.5  # s
-    moving_rate: float = 0.5  # rad/s of the knee that a look must have seen
+    moving_rate: float = 0.5  # rad/s of a sensor that a look must have seen
     axis_change: float = 0.17  # rad (10 deg) by which an axis must have moved for the calibration to be sent again
     smoothing_hz: float = 8.0  # Hz, low-pass of the rates' difference quotient, the acceleration
     rate_std: float = (

@@ -89,7 +89,7 @@ class Leg:
         if sample is None:
             return None
         self._sample = sample
-        self._look(sample, dt_s)
+        self._look(kept)
         self._settle()
         return self._state(instant.captured_ns, sample, dt_s)
 
@@ -100,8 +100,10 @@ class Leg:
         held = self._sample._replace(flexion_rate=0.0, inclination_rate=0.0, turn_rate=0.0, is_known=False)
         return LegState(held, False, dt_s)
 
-    def _look(self, sample: KneeSample, dt_s: float) -> None:
-        evidence = self.estimator.evidence() if self._watch.is_due(sample.flexion_rate, dt_s) else None
+    def _look(self, kept: Kept) -> None:
+        # Sensors that are swapped show no angle, but they turn.
+        is_due = self._watch.is_due(float(np.abs(kept.rate).max()), kept.dt_s)
+        evidence = self.estimator.evidence() if is_due else None
         if evidence is not None:
             self._watch.look(evidence)
 

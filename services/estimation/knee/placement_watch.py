@@ -1,6 +1,6 @@
 """Sensors worn otherwise than declared, named when the motion has shown it again and again.
 
-Every half second in which the knee moves is a look; what a look shows clearly is a vote for or against. How sensors are
+Every half second in which the leg moves is a look; what a look shows clearly is a vote for or against. How sensors are
 worn does not change with the posture, so a misplacement is named after `votes` votes for it with next to none against
 in the last minute or so of motion: a raised leg looks like a swap, but not for long enough. It is withdrawn once more
 speaks against it than for it. Where upward axes are declared, a leg that points up (swapped sensors, both upside down)
@@ -49,9 +49,9 @@ class PlacementWatch:
         """More looks have shown swapped sensors than the contrary."""
         return self._for[Misplacement.SWAPPED] > self._against[Misplacement.SWAPPED]
 
-    def is_due(self, flexion_rate: float, dt_s: float) -> bool:
-        """Whether this sample, dt_s after the one before, ends an interval in which the knee has moved."""
-        self._has_moved = self._has_moved or abs(flexion_rate) > self._parameters.moving_rate
+    def is_due(self, rate: float, dt_s: float) -> bool:
+        """Whether this sample, dt_s after the one before, ends an interval in which the leg turned fast enough."""
+        self._has_moved = self._has_moved or rate > self._parameters.moving_rate
         self._waited_s += dt_s
         if self._waited_s < self._parameters.look_s or not self._has_moved:
             return False
