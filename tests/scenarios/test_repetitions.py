@@ -5,10 +5,13 @@ import json
 import numpy as np
 import pytest
 
+from schemas.metrics import SessionMetrics
 from schemas.tasks import Repetition
 from schemas.vocabulary import LOWER_BODY
 from services.bench.gait.joint_walks import JointTrack
 from services.bench.repetitions.exercises import exercise, truths
+from services.cli.assembly import build_chain
+from services.ingest.source import iter_messages, open_source
 from services.segmentation.node import build
 
 SPEC = "exercise=1&tempo=20&duration=30&seed=4"
@@ -98,3 +101,19 @@ def test_a_knee_that_is_not_valid_has_none(session):
 def test_no_other_task_has_any(session):
     description = session.description().model_copy(update={"task": "walk"})
     assert repetitions(outputs_of(build(description), track_of(session).messages())) == []
+
+
+def test_two_sensors_are_enough_for_the_whole_chain():
+    options = "exercise=1&tempo=20&duration=30&seed=4&rate=50"
+    source = open_source(f"synthetic:knee?{options}")
+    chain = build_chain(source.describe())
+    produced = [made.payload for message in iter_messages(source) for made in chain.push(message)]
+    counted = [made for made in produced if isinstance(made, Repetition) and made.valid]
+    reports = [made for made in produced if isinstance(made, SessionMetrics)]
+    assert len(counted) == len(truths(exercise(options)))
+    assert [report.final for report in reports] == [False] * len(counted) + [True]
+    assert reports[-1].repetitions == counted
+    numbers = {(metric.name, metric.side): metric.value for metric in reports[-1].metrics}
+    assert numbers["repetitions_counted", "right"] == len(counted)
+    assert numbers["repetition_range", "right"] == pytest.approx(1.35, abs=0.1)
+    assert ("repetitions_counted", "left") not in numbers
