@@ -98,6 +98,13 @@ def knee(json_path: Path | None = None, *subject: str, report: Path | None = Non
     return run(json_path, *subject, report=report)
 
 
+def tug(json_path: Path | None = None, *subject: str) -> Scoreboard:
+    """Phases of the timed up and go against exact truth; rises against cameras; walks that hold none."""
+    from services.bench.tug.board import run
+
+    return run(json_path, *subject)
+
+
 SCOREBOARDS: dict[str, Callable[..., Scoreboard]] = {
     "accuracy": accuracy,
     "chain": chain,
@@ -110,5 +117,6 @@ SCOREBOARDS: dict[str, Callable[..., Scoreboard]] = {
     "rhythm": rhythm,
     "step": step,
     "strides": strides,
+    "tug": tug,
     "walks": walks,
 }

@@ -6,11 +6,12 @@ from schemas.metrics import SessionMetrics
 from schemas.rhythm import LearnedRhythm
 from schemas.session import SessionDescription
 from schemas.signals import LEARNED_RHYTHM, METRICS, REPETITION, STRIDE, TASK_PHASE, Signal
-from schemas.tasks import Repetition
+from schemas.tasks import Repetition, TaskPhase
 from schemas.vocabulary import Segment, Side, Task
 from services.biomech.event_sources import worn_segments
 from services.flow.message import Message, Output, Stream
 from services.flow.node import Node, State
+from services.metrics.attempts import AttemptTotals
 from services.metrics.parameters import MetricsParameters
 from services.metrics.repetitions import RepetitionTotals
 from services.metrics.rhythms import rhythm_metrics
@@ -24,7 +25,8 @@ class MetricsNode:
 
     When only one foot is seen, they come after every second stride of that foot. Learned rhythms are compared in the
     final ones only: until both streams have ended, it depends on chance which of them has come further. For the same
-    reason a session with an exercise tells of the exercise alone, after each repetition, until it ends.
+    reason a session with an exercise tells of the exercise alone, after each repetition, until it ends, and one with a
+    timed up and go of its attempts, after each phase.
     """
 
     outputs: tuple[Signal, ...] = (METRICS,)
@@ -46,15 +48,19 @@ class MetricsNode:
         self._totals = SessionTotals()
         self._is_exercise = description.task is Task.KNEE_FLEXION
         self._repetitions = RepetitionTotals(_exercised(description) if self._is_exercise else (), parameters)
+        self._attempts = AttemptTotals(parameters) if description.task is Task.TIMED_UP_AND_GO else None
         self._unreported = dict.fromkeys(Side, 0)
         self._captured_ns = 0
         self._repeated_ns = 0
+        self._tested_ns = 0
 
     def step(self, message: Message) -> list[Output]:
-        """Take a stride, a repetition, or what the rhythm has learned so far."""
+        """Take a stride, a repetition, a phase, or what the rhythm has learned so far."""
         stride = message.payload
         if isinstance(stride, Repetition):
             return self._take_repetition(stride, message.envelope.captured_ns)
+        if isinstance(stride, TaskPhase) and self._attempts is not None:
+            return self._take_phase(stride, message.envelope.captured_ns, self._attempts)
         if isinstance(stride, LearnedRhythm):
             self._learned = stride
         if not isinstance(stride, Stride):
@@ -62,7 +68,8 @@ class MetricsNode:
         self._captured_ns = max(self._captured_ns, message.envelope.captured_ns)
         self._totals.add(stride)
         self._unreported[stride.side] += 1
-        if not self._is_exercise and (all(self._unreported.values()) or max(self._unreported.values()) > 1):
+        is_walk = not self._is_exercise and self._attempts is None
+        if is_walk and (all(self._unreported.values()) or max(self._unreported.values()) > 1):
             self._unreported = dict.fromkeys(Side, 0)
             return [self._report(final=False)]
         return []
@@ -76,22 +83,33 @@ class MetricsNode:
         )
         return [Output(METRICS, self._repeated_ns, payload)]
 
+    def _take_phase(self, phase: TaskPhase, captured_ns: int, attempts: AttemptTotals) -> list[Output]:
+        self._tested_ns = max(self._tested_ns, captured_ns)
+        if not attempts.add(phase):
+            return []
+        metrics, phases = attempts.metrics(final=False), list(attempts.phases)
+        payload = SessionMetrics(
+            captured_ns=self._tested_ns, final=False, metrics=metrics, curves=[], phases=phases, repetitions=[]
+        )
+        return [Output(METRICS, self._tested_ns, payload)]
+
     def finish(self) -> list[Output]:
         """The final metrics, even of a session without a stride."""
         return [self._report(final=True)]
 
     def _report(self, *, final: bool) -> Output:
-        captured_ns = max(self._captured_ns, self._repeated_ns)
+        captured_ns, attempts = max(self._captured_ns, self._repeated_ns, self._tested_ns), self._attempts
         payload = SessionMetrics(
             captured_ns=captured_ns,
             final=final,
             metrics=[
                 *self._repetitions.metrics(),
+                *([] if attempts is None else attempts.metrics(final=final)),
                 *self._totals.metrics(self._parameters),
                 *rhythm_metrics(self._learned if final else None, self._known, final=final),
             ],
             curves=self._totals.curves(self._parameters),
-            phases=[],
+            phases=[] if attempts is None else list(attempts.phases),
             repetitions=self._repetitions.first if final else [],
         )
         return Output(METRICS, captured_ns, payload)
@@ -108,6 +126,8 @@ class MetricsNode:
             "captured_ns": self._captured_ns,
             "repetitions": self._repetitions.snapshot(),
             "repeated_ns": self._repeated_ns,
+            "attempts": None if self._attempts is None else self._attempts.snapshot(),
+            "tested_ns": self._tested_ns,
             "learned": None if self._learned is None else self._learned.model_dump(mode="json"),
         }
 
@@ -117,7 +137,9 @@ class MetricsNode:
         self._unreported = {side: state["unreported"][side.value] for side in Side}
         self._captured_ns = state["captured_ns"]
         self._repetitions.restore(state["repetitions"])
-        self._repeated_ns = state["repeated_ns"]
+        self._repeated_ns, self._tested_ns = state["repeated_ns"], state["tested_ns"]
+        if self._attempts is not None:
+            self._attempts.restore(state["attempts"])
         learned = state["learned"]
         self._learned = None if learned is None else LearnedRhythm.model_validate(learned)
 

@@ -22,3 +22,5 @@ class MetricsParameters:
     set last 5 to 10 (proposal)."""
     most_repetitions: int = 1000
     """repetitions told one by one; what a message takes."""
+    most_phases: int = 500
+    """phases of a timed test told one by one; what a message takes."""

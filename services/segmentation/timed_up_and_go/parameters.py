@@ -41,11 +41,12 @@ class TimedUpAndGoParameters:
     rise_std_s: float = 0.06
     """s, of a boundary that is the begin or end of a movement seen by itself."""
 
-    lift: float = 0.17
-    """m, by which the pelvis must rise or sink, where only the pelvis is seen: half of what an ordinary chair takes."""
-    lift_speed: float = 0.12
+    lift: float = 0.13
+    """m, by which the pelvis must rise or sink, where only the pelvis is seen: a third of what an ordinary chair takes,
+    since the slow parts of it are lost."""
+    lift_speed: float = 0.1
     """m/s, vertical, at which the pelvis may be on its way up or down; walking reaches twice that, but not for long."""
-    lift_peak: float = 0.22
+    lift_peak: float = 0.2
     """m/s, vertical speed that that rising and sitting down reach, and the drift of the speed does not."""
     speed_memory_s: float = 6.0
     """s after which the vertical speed forgets: an accelerometer's error grows no further."""

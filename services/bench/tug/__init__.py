@@ -1,0 +1,1 @@
+"""Scoreboard of the timed up and go."""
