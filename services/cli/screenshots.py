@@ -78,6 +78,7 @@ class _Camera:
         self.page.get(self.url + path)
         WebDriverWait(self.page, PATIENCE_S).until(lambda _: ready(), name)
         time.sleep(9.0 if name.startswith("live") else 1.5)
+        WebDriverWait(self.page, PATIENCE_S).until(lambda _: ready(), f"{name}, still")
         self.page.save_screenshot(str(self.folder / f"{name}.png"))
         out.print(f"  {self.folder / name}.png")
 

@@ -105,7 +105,7 @@ export function phaseTable(attempts, metrics = []) {
   );
   if (means.every(Boolean)) {
     const cells = means.map(({ value, spread }) => seconds(value, spread));
-    rows.push(el("tr", { class: "mean-row" }, el("th", { scope: "row" }, `Mean of ${means[0].strides}`), ...cells));
+    rows.push(el("tr", { class: "mean-row" }, el("th", { scope: "row" }, `Mean of ${means[0].strides} attempts`), ...cells));
   }
   const columns = ["", ...names.map((name) => `${PHASES[name]}#`), "Total#"];
   return table(columns, el("tbody", {}, ...rows));
