@@ -22,10 +22,9 @@ def recorded() -> dict[str, KneeRecording]:
 
     Raises MissingFile without the data.
     """
-    walks = {f"walking, neura {side}, played {ROUNDS} times": from_manifest(WALK, side) for side in Side}
-    played = {name: _played(walk, ROUNDS) for name, walk in walks.items()}
+    walks = {f"walking, neura {side}, played {ROUNDS} times": played_walk(side) for side in Side}
     landings = {"drop landings, fan": from_manifest("fan_knee_drop_landing_left", Side.LEFT)}
-    return played | landings | {f"hinge by hand, weygers {trial}": weygers(trial) for trial in ("02", "05")}
+    return walks | landings | {f"hinge by hand, weygers {trial}": weygers(trial) for trial in ("02", "05")}
 
 
 def recorded_difference(recording: KneeRecording) -> float:
@@ -49,7 +48,9 @@ def mean_of_intervals(values: Array, from_hz: float, to_hz: float) -> Array:
     return np.asarray(np.diff(summed[below] + share * (summed[below + 1] - summed[below]), axis=0) * to_hz / from_hz)
 
 
-def _played(recording: KneeRecording, rounds: int) -> KneeRecording:
-    rate, force = (np.tile(part, (rounds, 1, 1)) for part in recording[2:4])
-    flexion, holds = np.tile(recording.flexion, rounds), np.tile(recording.holds, rounds)
-    return recording._replace(rate=rate, force=force, flexion=flexion, holds=holds)
+def played_walk(side: Side) -> KneeRecording:
+    """The recorded walk, ROUNDS times. Raises MissingFile without the data."""
+    walk = from_manifest(WALK, side)
+    rate, force = (np.tile(part, (ROUNDS, 1, 1)) for part in walk[2:4])
+    flexion, holds = np.tile(walk.flexion, ROUNDS), np.tile(walk.holds, ROUNDS)
+    return walk._replace(rate=rate, force=force, flexion=flexion, holds=holds, orientations=None)

@@ -70,7 +70,8 @@ def olsson_axis(recording: KneeRecording) -> Array:
     from qmt import jointAxisEstHingeOlsson
 
     arrays = [np.ascontiguousarray(a[:, s]) for a in (recording.force, recording.rate) for s in range(2)]
-    with contextlib.redirect_stdout(io.StringIO()):  # it prints each iteration
+    # It prints each iteration, and divides by the rate of a sensor at rest.
+    with contextlib.redirect_stdout(io.StringIO()), np.errstate(invalid="ignore", divide="ignore"):
         first, second = jointAxisEstHingeOlsson(*arrays)
     return np.stack([np.ravel(first), np.ravel(second)])
 
