@@ -37,7 +37,24 @@ def follow_axis(memory: Memory, bench: Bench, dt_s: float) -> bool:
     knee.moving_s = keep * knee.moving_s + dt_s
     add_scatter(memory.scatter[THIGH], in_thigh, keep, dt_s)
     add_scatter(memory.scatter[SHANK], in_shank, keep, dt_s)
+    follow_late_axis(memory, in_thigh, in_shank, dt_s, parameters.slip_time_s)
     return True
+
+
+@compiled
+def follow_late_axis(
+    memory: Memory,
+    in_thigh: tuple[float, float, float],
+    in_shank: tuple[float, float, float],
+    dt_s: float,
+    time_s: float,
+) -> None:
+    """Scatter of the relative rate (rad/s, in either sensor) in the last `time_s` of motion."""
+    slip = memory.slip
+    keep = max(0.0, 1.0 - dt_s / time_s)
+    slip.moving_s = keep * slip.moving_s + dt_s
+    add_scatter(slip.scatter[THIGH], in_thigh, keep, dt_s)
+    add_scatter(slip.scatter[SHANK], in_shank, keep, dt_s)
 
 
 @compiled

@@ -9,9 +9,11 @@ Steps of one sample, in the order of `sample.py`:
 5. heading held by the hinge                         heading.py
 6. angle, zero, uncertainty                          flexion.py
 7. which way the knee bends                          bending.py
+8. whether a sensor has slipped                      slip.py
 """
 
 from enum import StrEnum
+from math import radians
 from typing import NamedTuple
 
 import numpy as np
@@ -40,10 +42,14 @@ class Datum(StrEnum):
 
 
 DATUMS = (Datum.START, Datum.STANDING, Datum.SET)
+DATUM_STD = {Datum.STANDING: radians(5.0), Datum.SET: 0.0}
+"""rad, beside `flexion_std`: how far a standing knee is from what a laboratory calls straight (-10 to 3 deg on three
+people). A pose that was declared is 0 by definition; START has no deviation, its angles are right as changes."""
 
 
 class KneeReading(NamedTuple):
-    """Flexion of one sample, rad and rad/s; positive when the knee bends."""
+    """Flexion of one sample, rad and rad/s; positive when the knee bends. `flexion_std` is that of its changes: the
+    datum has a deviation of its own (DATUM_STD)."""
 
     flexion: float
     flexion_std: float
@@ -153,6 +159,11 @@ class KneeAxis:
         knee, parameters = self._memory["knee"][0], self.parameters
         has_moved = knee["joint_moving_s"] >= parameters.joint_motion_s
         return bool(has_moved and knee["joint_coherence"] >= parameters.joint_coherence)
+
+    @property
+    def slips(self) -> int:
+        """How often a sensor was found to have slipped: each time axis, arms, standing and zero were given up."""
+        return int(self._memory["slip"][0]["count"])
 
     @property
     def axes(self) -> NDArray[np.float64]:

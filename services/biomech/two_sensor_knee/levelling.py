@@ -2,7 +2,9 @@
 
 The idea of Laidig and Seel (VQF, Information Fusion 2023): low-pass the specific force where it is nearly constant, in
 the world that the gyroscope keeps, so that impacts and swings average out, and turn that world so that the mean
-points up. The turn this needs in the long run is the gyroscope's bias.
+points up. The turn this needs in the long run is the gyroscope's bias. Beside it the force of the instant turns the
+world a little: a sensor on soft tissue swings farther than its bone, and its accelerometer, like a pendulum's, reads
+less.
 """
 
 from math import atan2, sqrt
@@ -27,13 +29,26 @@ def follow_level(
     quat = product(quat, turn_by(x * dt_s, y * dt_s, z * dt_s))
     low_pass_force(level, turned(quat, force[0], force[1], force[2]), dt_s, parameters)
     turn_x, turn_z = level_by(level)
-    correction = turn_by(turn_x, 0.0, turn_z)
-    quat = unit(product(correction, quat))
+    quat = product(turn_by(turn_x, 0.0, turn_z), quat)
+    tilt_x, tilt_z = tilt_by(turned(quat, force[0], force[1], force[2]), parameters.tilt_rate * dt_s)
+    quat = unit(product(turn_by(tilt_x, 0.0, tilt_z), quat))
     for i in range(4):
         level.quat[i] = quat[i]
     fill_matrix(quat, R)
     if is_new:
-        follow_bias(level, R, turn_x / dt_s, turn_z / dt_s, is_at_rest, dt_s, parameters)
+        low_pass_tilt(level, tilt_x / dt_s, tilt_z / dt_s, dt_s, parameters)
+        rate_x, rate_z = turn_x / dt_s + level.tilted[0], turn_z / dt_s + level.tilted[1]
+        follow_bias(level, R, rate_x, rate_z, is_at_rest, dt_s, parameters)
+
+
+@compiled
+def low_pass_tilt(level: Record, rate_x: float, rate_z: float, dt_s: float, parameters: Record) -> None:
+    """The rate (x, z), rad/s, at which the force of the instant turns the world, as late as that of the mean."""
+    gain = low_pass_gain(parameters.level_time_s, dt_s)
+    level.tilted_fast[0] += gain * (rate_x - level.tilted_fast[0])
+    level.tilted_fast[1] += gain * (rate_z - level.tilted_fast[1])
+    for k in range(2):
+        level.tilted[k] += gain * (level.tilted_fast[k] - level.tilted[k])
 
 
 @compiled
@@ -47,6 +62,13 @@ def low_pass_force(level: Record, force: tuple[float, float, float], dt_s: float
             level.force[i] = level.force_fast[i]
         else:
             level.force[i] += gain * (level.force_fast[i] - level.force[i])
+
+
+@compiled
+def tilt_by(felt: tuple[float, float, float], share: float) -> tuple[float, float]:
+    """This share of the turn (x, z), rad, that brings the force felt now, in the world, upright."""
+    size = sqrt(felt[0] * felt[0] + felt[1] * felt[1] + felt[2] * felt[2]) + 1e-9
+    return -share * felt[2] / size, share * felt[0] / size
 
 
 @compiled

@@ -33,6 +33,8 @@ LEVEL = np.dtype(
         ("rows", np.float64, (2, 3)),
         ("removed_fast", np.float64, 2),  # rad/s, horizontal part of the removed bias, low-passed like the force
         ("removed", np.float64, 2),
+        ("tilted_fast", np.float64, 2),  # rad/s, turn by the force of the instant, low-passed like the force
+        ("tilted", np.float64, 2),
         ("calm_rate", np.float64, 3),  # rad/s, what rest is measured against
         ("calm_force", np.float64, 3),  # m/s^2
         ("elapsed_s", np.float64),  # since levelling began
@@ -81,6 +83,19 @@ POSTURE = np.dtype(
 )
 """Running moments in motion: angle, height of the thigh's sensor over the shank's and, as `upright`, over the knee."""
 
+SLIP = np.dtype(
+    [
+        ("scatter", np.float64, (2, 3, 3)),  # rad^2/s of the relative rate in the last seconds of motion
+        ("axes", np.float64, (2, 3)),  # its first components
+        ("moving_s", np.float64),  # of motion in it
+        ("arms", np.float64, (2, 3)),  # m, as they were when the axis had settled
+        ("has_arms", np.float64),
+        ("suspected_s", np.float64),  # of motion in which axis or arms differed
+        ("count", np.float64),  # of slips
+    ]
+)
+"""What tells a sensor that has slipped."""
+
 PARAMETERS = np.dtype([(field.name, np.float64) for field in fields(KneeAxisParameters)])
 OUTPUTS = (
     "flexion", "flexion_std", "is_valid", "flexion_rate", "axis_std", "flexion_from_sensor_axes", "is_sign_known",
@@ -94,6 +109,7 @@ MEMORY = np.dtype(
         ("levels", LEVEL, 2),
         ("knee", KNEE),
         ("posture", POSTURE),
+        ("slip", SLIP),
         ("rate_before", np.float64, (2, 3)),  # rad/s
         ("joint_fast", np.float64, (2, 3, 4)),  # world: specific force, and the arm's effect, after the first low-pass
         ("joint", np.float64, (2, 3, 4)),  # after the second

@@ -1,8 +1,8 @@
 """Tunables of the two-sensor knee.
 
 Sources: [L] Laidig and Seel 2023 (VQF), whose choices for the same quantity are taken; [T] chosen on weygers_hinge 02
-and on synthetic legs. The gates of the first tie, of sign and of zero were set with the worn recordings in view, too:
-they decide when an angle is believed, not how good it then is.
+and on synthetic legs, and on others where it says so. The gates of the first tie, of sign, zero and slip were set with
+the worn recordings in view, too: they decide when an angle is believed, not how good it then is.
 """
 
 from dataclasses import dataclass
@@ -16,6 +16,9 @@ class LevelParameters:
     level_time_s: float = 2.1
     """s. Each of two low-passes of the specific force in the levelled frame. [L] has a Butterworth of 3 s, whose
     corner is that of two poles of 2.1 s."""
+    tilt_rate: float = 0.15
+    """1/s. How fast the force of the instant turns the world upright, beside its mean. weygers_hinge 02, landings and
+    single steps agree on 0.1 to 0.2; 0 is the mean alone, as in [L]."""
     start_bias_std: float = radians(0.5)
     """rad/s. [L]"""
     bias_wander: float = radians(0.1)
@@ -108,6 +111,16 @@ class HingeParameters:
     """m. A shorter arm to the knee was not seen well: nothing is concluded from its direction."""
     one_sided: float = 0.5
     """Deviations of the moving angle by which its mean must differ from that of a rest for it to be standing."""
+    slip_time_s: float = 3.0
+    """s of motion that tell the axis of late."""
+    slip_settled_s: float = 6.0
+    """s of motion after which a slip can be told."""
+    slip_axis: float = radians(7.0)
+    """rad, beside its own deviation, by which the axis of late must differ. [T]; 5.6 on walking people"""
+    slip_arm: float = 0.3
+    """Share of an arm to the knee by which it must have moved: 17 degrees of turn. [T]; 0.26 on a person who lands"""
+    slip_suspected_s: float = 1.0
+    """s of motion in which either must differ without a break."""
     gap_s: float = 0.5
     """s. After a longer interval without samples both sensors are levelled anew."""
     largest_rate: float = 70.0

@@ -32,6 +32,7 @@ from services.biomech.two_sensor_knee.memory import (
     Memory,
     Record,
 )
+from services.biomech.two_sensor_knee.slip import begin_again, has_slipped
 from services.biomech.two_sensor_knee.turns import fill_relative, wrapped
 
 CONTRADICTED = 2.0
@@ -101,6 +102,9 @@ def follow_hinge(memory: Memory, bench: Bench, due: int, is_new: bool, dt_s: flo
     is_moving = is_new and follow_axis(memory, bench, dt_s)
     if due != IDLE:
         improve_axes(memory, bench)
+        if has_slipped(memory, bench, is_moving, parameters.joint_interval_s):
+            begin_again(memory, bench)
+            return
     if knee.has_angle == 0.0:
         if knee.moving_s < parameters.gathering_s:
             return
