@@ -84,10 +84,11 @@ class Update(NamedTuple):
     in_use: Indices  # (1,) how many
     innovation: Array  # (15, 3) m
     distance: Array  # (15,) squared innovation in variances, 3 expected; of a centre in use
-    W: Array  # (64, M)
-    S: Array  # (64, 64) innovation covariance, after the update its Cholesky factor
-    y: Array  # (64,)
-    pivot: Array  # (64,) reciprocal diagonal of the factor
+    W: Array  # (60, M)
+    turned: Array  # (40, 60) what of W is seen, transposed
+    S: Array  # (60, 60) innovation covariance, after the update its Cholesky factor in the upper triangle
+    y: Array  # (60,)
+    pivot: Array  # (60,) reciprocal diagonal of the factor
     dx: Array  # (M,)
     evidence: Array  # (2,) squared innovations in variances, and log determinant, of the centres alone
 
@@ -107,12 +108,11 @@ class Bounds(NamedTuple):
 
 def empty_update(width: int) -> Update:
     """Room for an update with covariance rows of `width`."""
-    rows = 3 * CENTRES + PRIORS
-    rows += -rows % 8
+    rows = 3 * CENTRES + PRIORS + 3
     return Update(
         empty_pose(), np.zeros((BIASES, KINEMATIC)), np.zeros((BIASES, KINEMATIC)),
         np.zeros(CENTRES, dtype=np.int64), np.zeros(1, dtype=np.int64), np.zeros((CENTRES, 3)), np.zeros(CENTRES),
-        np.zeros((rows, width)), np.zeros((rows, rows)), np.zeros(rows), np.zeros(rows), np.zeros(width), np.zeros(2),
+        np.zeros((rows, width)), np.zeros((KINEMATIC, rows)), np.zeros((rows, rows)), np.zeros(rows), np.zeros(rows), np.zeros(width), np.zeros(2),
     )  # fmt: skip
 
 

@@ -67,18 +67,29 @@ def project_rows(P: Array, biased: bool, columns: Columns, update: Update) -> No
 
 
 @compiled
-def innovation_covariance(biased: bool, state: Indices, tree: Tree, noise: Noise, update: Update) -> None:
-    """Lower triangle of S = H P H' + R. R is larger along the bone that leads to a centre, and where it is inferred."""
-    W, S, rows = update.W, update.S, update.rows
-    for s in range(3 * update.in_use[0]):
-        own = SEEN + 3 * update.used[s // 3] + s % 3
-        for r in range(s, 3 * update.in_use[0]):
-            total = 0.0
-            for k in range(KINEMATIC):
-                total += W[r, k] * rows[s, k]
-            if biased:
-                total += W[r, own]
-            S[r, s] = total
+def innovation_covariance(
+    biased: bool, state: Indices, tree: Tree, columns: Columns, noise: Noise, update: Update
+) -> None:
+    """S = H P H' + R. R is larger along the bone that leads to a centre, and where it is inferred."""
+    W, S, rows, turned = update.W, update.S, update.rows, update.turned
+    count = 3 * update.in_use[0]
+    for r in range(count):
+        for k in range(SEEN):
+            turned[k, r] = W[r, k]
+    for s in range(count):
+        m, line = update.used[s // 3], S[s, :count]
+        own = SEEN + 3 * m + s % 3
+        first = turned[s % 3, :count]
+        for r in range(count):
+            line[r] = first[r]
+        for c in range(3, columns.used[m]):
+            j = columns.table[m, c]
+            h, part = rows[s, j], turned[j, :count]
+            for r in range(count):
+                line[r] += h * part[r]
+        if biased:
+            for r in range(count):
+                line[r] += W[r, own]
     for a in range(update.in_use[0]):
         m = update.used[a]
         believe(a, m, tree.before[m], noise.inferred if state[m] == 1 else 1.0, noise, update)
@@ -96,13 +107,13 @@ def believe(a: int, m: int, before: int, factor: float, noise: Noise, update: Up
     for i in range(3):
         for k in range(3):
             R[i, k] = factor * (noise.along[m] * u[i] * u[k] + (noise.variance[m] if i == k else 0.0))
-            block[i, k] = S[b + max(i, k), b + min(i, k)]
+            block[i, k] = S[b + i, b + k]
     e = update.innovation[m]
     update.distance[m] = squared_length(block + R, e[0], e[1], e[2])
     if noise.gate > 0.0 and update.distance[m] > noise.gate:
         R *= (update.distance[m] / noise.gate) ** 2
     for i in range(3):
-        for k in range(i + 1):
+        for k in range(3):
             S[b + i, b + k] += R[i, k]
 
 
@@ -125,9 +136,9 @@ def append_priors(x: Array, P: Array, priors: Priors, share: float, update: Upda
         for k in range(P.shape[1]):
             W[r, k] = P[c, k]
         for s in range(first):
-            S[r, s] = W[s, c]
+            S[s, r] = W[s, c]
         for s in range(p + 1):
-            S[r, first + s] = P[c, priors.column[s]]
+            S[first + s, r] = P[c, priors.column[s]]
         S[r, r] += share * priors.variance[p]
         update.y[r] = priors.value[p] - x[c]
     return int(first + priors.column.size)
@@ -135,61 +146,71 @@ def append_priors(x: Array, P: Array, priors: Priors, share: float, update: Upda
 
 @compiled
 def whiten(rows: int, update: Update) -> None:
-    """Factor S = L L'; W = L^-1 W, y = L^-1 y. Rows up to the next multiple of four are emptied."""
+    """Factor S = U' U in the upper triangle; W = U'^-1 W, y = U'^-1 y. Rows up to the next multiple of six are emptied.
+
+    Along rows throughout, so that the compiler fills its registers.
+    """
     S, W, y, pivot = update.S, update.W, update.y, update.pivot
     M = W.shape[1]
     for r in range(rows):
-        for s in range(r):
-            total = S[r, s]
-            for k in range(s):
-                total -= S[r, k] * S[s, k]
-            S[r, s] = total * pivot[s]
-        total, left = S[r, r], y[r]
+        inverse = 1.0 / np.sqrt(S[r, r])
+        pivot[r] = inverse
+        head = S[r, r:rows]
+        for k in range(head.size):
+            head[k] *= inverse
+        for i in range(r + 1, rows):
+            f, line, upper = S[r, i], S[i, i:rows], S[r, i:rows]
+            for k in range(line.size):
+                line[k] -= f * upper[k]
+        left = y[r]
         for k in range(r):
-            total -= S[r, k] * S[r, k]
-            left -= S[r, k] * y[k]
-        inverse = 1.0 / np.sqrt(total)
-        pivot[r], S[r, r], y[r] = inverse, total * inverse, left * inverse
-        subtract_earlier(r, S[r], W)
+            left -= S[k, r] * y[k]
+        y[r] = left * inverse
+        subtract_earlier(r, S, W)
         for k in range(M):
             W[r, k] *= inverse
-    for r in range(rows, rows + (-rows) % 4):
+    for r in range(rows, rows + (-rows) % 6):
         y[r] = 0.0
         for k in range(M):
             W[r, k] = 0.0
 
 
 @compiled
-def subtract_earlier(r: int, factor: Array, W: Array) -> None:
-    """W[r] -= sum of factor[s] W[s] over s < r, four at a time."""
-    M = W.shape[1]
-    whole = r - r % 4
-    for s in range(0, whole, 4):
-        a, b, c, d = factor[s], factor[s + 1], factor[s + 2], factor[s + 3]
-        for k in range(M):
-            W[r, k] -= a * W[s, k] + b * W[s + 1, k] + c * W[s + 2, k] + d * W[s + 3, k]
+def subtract_earlier(r: int, S: Array, W: Array) -> None:
+    """W[r] -= sum of S[s, r] W[s] over s < r, six at a time."""
+    target, whole = W[r], r - r % 6
+    for s in range(0, whole, 6):
+        a, b, c, d, e, f = S[s, r], S[s + 1, r], S[s + 2, r], S[s + 3, r], S[s + 4, r], S[s + 5, r]
+        t, u, v, w, x, z = W[s], W[s + 1], W[s + 2], W[s + 3], W[s + 4], W[s + 5]
+        for k in range(target.size):
+            target[k] -= a * t[k] + b * u[k] + c * v[k] + d * w[k] + e * x[k] + f * z[k]
     for s in range(whole, r):
-        a = factor[s]
-        for k in range(M):
-            W[r, k] -= a * W[s, k]
+        a, w = S[s, r], W[s]
+        for k in range(target.size):
+            target[k] -= a * w[k]
 
 
 @compiled
 def subtract_gain(rows: int, x: Array, P: Array, update: Update) -> None:
     """x += W' y, P -= W' W: the upper triangle, mirrored below."""
     W, y, dx = update.W, update.y, update.dx
-    n, M = P.shape
+    n = P.shape[0]
     dx[:] = 0.0
-    for r in range(0, rows, 4):
-        a, b, c, d = y[r], y[r + 1], y[r + 2], y[r + 3]
-        for k in range(M):
-            dx[k] += a * W[r, k] + b * W[r + 1, k] + c * W[r + 2, k] + d * W[r + 3, k]
+    for r in range(rows):
+        g, row = y[r], W[r]
+        for k in range(dx.size):
+            dx[k] += g * row[k]
     for i in range(n):
         x[i] += dx[i]
-        for r in range(0, rows, 4):
-            a, b, c, d = W[r, i], W[r + 1, i], W[r + 2, i], W[r + 3, i]
-            for k in range(i - i % 8, M):
-                P[i, k] -= a * W[r, k] + b * W[r + 1, k] + c * W[r + 2, k] + d * W[r + 3, k]
+    for r in range(0, rows, 6):
+        # Six rows of W stay in the first cache while all of P passes.
+        for i in range(n):
+            first = i - i % 8
+            a, b, c, d, e, f = W[r, i], W[r + 1, i], W[r + 2, i], W[r + 3, i], W[r + 4, i], W[r + 5, i]
+            line, s, t, u = P[i, first:], W[r, first:], W[r + 1, first:], W[r + 2, first:]
+            v, w, z = W[r + 3, first:], W[r + 4, first:], W[r + 5, first:]
+            for k in range(line.size):
+                line[k] -= a * s[k] + b * t[k] + c * u[k] + d * v[k] + e * w[k] + f * z[k]
     for i in range(n):
         for k in range(i):
             P[i, k] = P[k, i]
@@ -206,7 +227,7 @@ def fuse(
     """
     linearise(x, biased, centres, state, tree, update)
     project_rows(P, biased, columns, update)
-    innovation_covariance(biased, state, tree, noise, update)
+    innovation_covariance(biased, state, tree, columns, noise, update)
     rows = append_priors(x, P, priors, share, update)
     whiten(rows, update)
     squares, log_determinant = 0.0, 0.0
