@@ -28,6 +28,7 @@ from services.bus.loop import EventLoop
 from services.bus.publisher import StreamPublisher
 from services.bus.receiver import Delivery
 from services.flow.message import Stream
+from services.flow.position import Position
 from services.flow.rejections import RejectionCounter
 
 log = logging.getLogger("archive")
@@ -164,7 +165,7 @@ class Recordings:
     def _listen(self, live: LiveSession) -> None:
         live.paused = False
         live.receivers = [
-            self._loop.receive(live.session, stream, live.handed.get(stream.name), partial(self._deliver, live))
+            self._loop.receive(live.session, stream, _behind(live, stream), partial(self._deliver, live))
             for stream in live.streams
         ]
 
@@ -250,6 +251,12 @@ class Recordings:
         del self.live[live.session]
         if live.gaps is not None:
             live.gaps.close()
+
+
+def _behind(live: LiveSession, stream: Stream) -> Position | None:
+    """Where the recording goes on; None at the beginning."""
+    handed = live.handed.get(stream.name)
+    return None if handed is None else Position.of(handed)
 
 
 def _outcome(live: LiveSession) -> tuple[RecordingState, str | None]:

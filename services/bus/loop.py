@@ -10,7 +10,6 @@ import traceback
 from collections.abc import Callable
 from typing import Any, TypeVar
 
-from schemas.checkpoint import StreamPosition
 from services.bus.connection import Bus
 from services.bus.feed import SignalFeed
 from services.bus.logs import event
@@ -18,6 +17,7 @@ from services.bus.queue import BoundedQueue, Task
 from services.bus.received import Handle, Received
 from services.bus.receiver import Delivery, StreamReceiver
 from services.flow.message import Stream
+from services.flow.position import Position
 
 Result = TypeVar("Result")
 
@@ -47,7 +47,7 @@ class EventLoop:
         self.every(REPAIR_TICK_S, self._tick_receivers)
 
     def receive(
-        self, session: str, stream: Stream, position: StreamPosition | None, deliver: Callable[[Delivery], None]
+        self, session: str, stream: Stream, position: Position | None, deliver: Callable[[Delivery], None]
     ) -> StreamReceiver:
         """Deliver a lossless stream, in order and from behind `position` on (None: from its beginning)."""
         if stream.signal.name not in self._feeds:

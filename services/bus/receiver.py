@@ -4,7 +4,6 @@ import time
 from collections.abc import Callable
 from typing import NamedTuple
 
-from schemas.checkpoint import StreamPosition
 from schemas.health import Reason, StreamCount
 from schemas.signals import replay_key, stream_key
 from services.bus.connection import Bus
@@ -14,6 +13,7 @@ from services.bus.received import Received
 from services.bus.replay import question_parameters
 from services.flow.inbox import Hole, OrderedInbox
 from services.flow.message import DecodeError, Envelope, Stream
+from services.flow.position import Position
 from services.flow.rejections import RejectionCounter
 from services.flow.repair import DEFAULT_TIMES, Repair, RepairTimes
 from services.flow.ring import Question, RingExtent
@@ -49,7 +49,7 @@ class StreamReceiver:
         session: str,
         stream: Stream,
         queue: BoundedQueue,
-        position: StreamPosition | None,
+        position: Position | None,
         feed: SignalFeed,
         deliver: Callable[[Delivery], None],
         times: RepairTimes = DEFAULT_TIMES,
@@ -73,7 +73,7 @@ class StreamReceiver:
         self.tick(time.monotonic())
 
     @property
-    def position(self) -> StreamPosition | None:
+    def position(self) -> Position | None:
         """The last message delivered."""
         return self._inbox.position
 

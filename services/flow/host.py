@@ -1,8 +1,9 @@
 """A node with its place in its streams: numbers its outputs, closes them, freezes and resumes."""
 
-from schemas.checkpoint import Checkpoint, StreamPosition
+from schemas.checkpoint import Checkpoint
 from services.flow.message import Envelope, Message, Output, Stream
 from services.flow.node import Node
+from services.flow.position import Position
 
 
 class HostedNode:
@@ -19,10 +20,9 @@ class HostedNode:
         self.node = node
         self.epoch = epoch
         self.captured_ns = 0
-        self.inputs: dict[Stream, StreamPosition] = {}
-        self.outputs = {
-            Stream(signal, service): StreamPosition(epoch=0, sequence=-1, ended=False) for signal in node.outputs
-        }
+        self.inputs: dict[Stream, Position] = {}
+        self._streams = {signal.name: Stream(signal, service) for signal in node.outputs}
+        self.outputs = {stream: Position(0, -1, ended=False) for stream in self._streams.values()}
 
     @property
     def ended(self) -> bool:
@@ -41,9 +41,11 @@ class HostedNode:
 
     def skip(self, stream: Stream, envelope: Envelope) -> None:
         """Count the next message of a stream as done without showing it to the node: it could not be read."""
-        self.inputs[stream] = StreamPosition(epoch=envelope.epoch, sequence=envelope.sequence, ended=envelope.final)
-        self.epoch = max(self.epoch, envelope.epoch)
-        self.captured_ns = max(self.captured_ns, envelope.captured_ns)
+        self.inputs[stream] = Position(envelope.epoch, envelope.sequence, envelope.final)
+        if envelope.epoch > self.epoch:
+            self.epoch = envelope.epoch
+        if envelope.captured_ns > self.captured_ns:
+            self.captured_ns = envelope.captured_ns
 
     def checkpoint(self) -> Checkpoint:
         """Freeze between two messages."""
@@ -51,8 +53,8 @@ class HostedNode:
             service=self.service,
             session=self.session,
             captured_ns=self.captured_ns,
-            inputs={stream.name: place for stream, place in self.inputs.items()},
-            outputs={stream.name: position for stream, position in self.outputs.items()},
+            inputs={stream.name: place.written() for stream, place in self.inputs.items()},
+            outputs={stream.name: place.written() for stream, place in self.outputs.items()},
             state=self.node.snapshot(),
         )
 
@@ -62,18 +64,18 @@ class HostedNode:
             raise ValueError(f"checkpoint of {checkpoint.service}/{checkpoint.session}, not of {self.service}")
         self.captured_ns = checkpoint.captured_ns
         self.epoch = max([self.epoch, *(place.epoch for place in checkpoint.outputs.values())])
-        self.inputs = {Stream.parse(name): position for name, position in checkpoint.inputs.items()}
-        self.outputs = {Stream.parse(name): position for name, position in checkpoint.outputs.items()}
+        self.inputs = {Stream.parse(name): Position.of(place) for name, place in checkpoint.inputs.items()}
+        self.outputs = {Stream.parse(name): Position.of(place) for name, place in checkpoint.outputs.items()}
         self.node.restore(checkpoint.state)
 
-    def _place(self, stream: Stream, *, ended: bool) -> StreamPosition:
+    def _place(self, stream: Stream, *, ended: bool) -> Position:
         last = self.outputs[stream]
         sequence = last.sequence + 1 if self.epoch == last.epoch else 0
-        self.outputs[stream] = StreamPosition(epoch=self.epoch, sequence=sequence, ended=ended)
-        return self.outputs[stream]
+        place = self.outputs[stream] = Position(self.epoch, sequence, ended)
+        return place
 
     def _number(self, output: Output) -> Message:
-        stream = Stream(output.signal, self.service)
+        stream = self._streams[output.signal.name]
         place = self._place(stream, ended=False)
         return Message(stream, Envelope(place.epoch, place.sequence, output.captured_ns), output.payload)
 

@@ -3,8 +3,8 @@
 from dataclasses import dataclass, field
 from typing import Generic, NamedTuple, TypeVar
 
-from schemas.checkpoint import StreamPosition
 from services.flow.message import Envelope
+from services.flow.position import Position
 
 Item = TypeVar("Item")
 
@@ -36,7 +36,7 @@ class OrderedInbox(Generic[Item]):
     `most_waiting` bounds the memory: past it the oldest hole is given up.
     """
 
-    position: StreamPosition | None = None
+    position: Position | None = None
     most_waiting: int = 4096
     counts: InboxCounts = field(default_factory=InboxCounts)
     given_up: list[Hole] = field(default_factory=list)
@@ -74,7 +74,7 @@ class OrderedInbox(Generic[Item]):
             return []
         self.given_up.append(hole)
         self.counts.lost += hole.last - hole.first + 1
-        self.position = self.position.model_copy(update={"sequence": hole.last})
+        self.position = self.position._replace(sequence=hole.last)
         return self._drain()
 
     def _enter_epoch(self, epoch: int) -> list[tuple[Envelope, Item]]:
@@ -83,7 +83,7 @@ class OrderedInbox(Generic[Item]):
         ready = []
         while self._waiting:
             ready += self.give_up()
-        self.position = StreamPosition(epoch=epoch, sequence=-1, ended=False)
+        self.position = Position(epoch, -1, ended=False)
         return ready
 
     def _drain(self) -> list[tuple[Envelope, Item]]:
@@ -96,5 +96,5 @@ class OrderedInbox(Generic[Item]):
         if ready:
             self.counts.received += len(ready)
             ended = ready[-1][0].final
-            self.position = StreamPosition(epoch=self.position.epoch, sequence=sequence, ended=ended)
+            self.position = Position(self.position.epoch, sequence, ended)
         return ready

@@ -11,7 +11,7 @@ from typing import Any
 
 import pytest
 
-from schemas.checkpoint import Checkpoint, StreamPosition
+from schemas.checkpoint import Checkpoint
 from schemas.health import Progress
 from schemas.imu import ImuBatch, SensorSamples
 from schemas.session import Anthropometry, SessionDescription
@@ -23,6 +23,7 @@ from services.bus.received import Received
 from services.bus.receiver import Delivery, StreamReceiver
 from services.bus.settings import BusSettings
 from services.flow.message import Stream
+from services.flow.position import Position
 
 HUB = Stream(IMU, "hub")
 TICK_NS = 10_000_000
@@ -95,7 +96,7 @@ class Collector:
         self._thread = threading.Thread(target=self.loop.run, daemon=True)
         self._thread.start()
 
-    def receive(self, session: str, stream: Stream, position: StreamPosition | None = None) -> StreamReceiver:
+    def receive(self, session: str, stream: Stream, position: Position | None = None) -> StreamReceiver:
         """Collect a stream."""
         made: list[StreamReceiver] = []
         self.loop.post(lambda: made.append(self.loop.receive(session, stream, position, self.deliveries.append)))

@@ -9,13 +9,13 @@ from typing import Any
 
 import pytest
 
-from schemas.checkpoint import StreamPosition
 from schemas.health import Reason
 from schemas.signals import stream_key
 from services.bus.queue import BoundedQueue
 from services.bus.router import open_router
 from services.bus.settings import BusSettings
 from services.flow.message import Envelope
+from services.flow.position import Position
 from tests.system.stage import HUB, Collector, FakeIngest, Processes, sample, wait_until
 
 pytestmark = pytest.mark.system
@@ -93,7 +93,7 @@ def test_a_subscriber_goes_on_behind_its_position(settings: BusSettings, closing
     ingest = closing(FakeIngest(settings, "s"))
     ingest.send(100)
     collector = closing(Collector(settings))
-    collector.receive("s", HUB, StreamPosition(epoch=0, sequence=89, ended=False))
+    collector.receive("s", HUB, Position(0, 89, ended=False))
     wait_until(lambda: len(collector.deliveries) == 10)
     assert collector.numbers() == list(range(90, 100))
 

@@ -4,7 +4,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from schemas.checkpoint import Checkpoint, StreamPosition
+from schemas.checkpoint import Checkpoint
 from schemas.gait import GaitEvent
 from schemas.health import Rejection
 from schemas.imu import ImuBatch, SensorSamples
@@ -14,6 +14,7 @@ from services.flow.chain import Chain
 from services.flow.host import HostedNode
 from services.flow.message import Envelope, Message, Output, Stream
 from services.flow.node import State
+from services.flow.position import Position
 
 LEFT, RIGHT = Stream(IMU, "left"), Stream(IMU, "right")
 
@@ -120,7 +121,7 @@ def test_a_host_that_starts_in_the_middle_uses_its_own_epoch():
 def test_a_skipped_message_moves_the_position_only():
     one = host()
     one.skip(LEFT, Envelope(0, 7, 99))
-    assert one.inputs[LEFT] == StreamPosition(epoch=0, sequence=7, ended=False)
+    assert one.inputs[LEFT] == Position(0, 7, ended=False)
     assert one.captured_ns == 99
     assert one.node.snapshot() == {"total": 0}
 

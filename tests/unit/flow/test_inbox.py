@@ -4,9 +4,9 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from schemas.checkpoint import StreamPosition
 from services.flow.inbox import Hole, OrderedInbox
 from services.flow.message import Envelope
+from services.flow.position import Position
 
 
 def envelope(sequence: int, epoch: int = 0, *, final: bool = False) -> Envelope:
@@ -41,7 +41,7 @@ def test_each_message_comes_once_in_order_or_is_lost(case):
 @given(arrivals(), st.integers(0, 40))
 def test_a_resumed_inbox_takes_only_what_is_behind_its_position(case, done):
     _, arriving = case
-    inbox: OrderedInbox[int] = OrderedInbox(StreamPosition(epoch=0, sequence=done, ended=False))
+    inbox: OrderedInbox[int] = OrderedInbox(Position(0, done, ended=False))
     out = [item for number in arriving for _, item in inbox.accept(envelope(number), number)]
     while inbox.hole() is not None:
         out += [item for _, item in inbox.give_up()]
@@ -105,4 +105,4 @@ def test_the_final_message_ends_the_stream(last):
     inbox: OrderedInbox[int] = OrderedInbox()
     for number in range(last + 1):
         inbox.accept(envelope(number, final=number == last), number)
-    assert inbox.position == StreamPosition(epoch=0, sequence=last, ended=True)
+    assert inbox.position == Position(0, last, ended=True)

@@ -6,9 +6,9 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from schemas.checkpoint import StreamPosition
 from services.flow.inbox import OrderedInbox
 from services.flow.message import Envelope
+from services.flow.position import Position
 from services.flow.repair import DEFAULT_TIMES, Repair
 from services.flow.ring import Place, Question, ReplayRing, RingExtent
 
@@ -33,7 +33,7 @@ class Producer:
 class Consumer:
     """An inbox under repair; `clock` is its monotonic clock."""
 
-    def __init__(self, position: StreamPosition | None = None) -> None:
+    def __init__(self, position: Position | None = None) -> None:
         self.inbox: OrderedInbox[None] = OrderedInbox(position)
         self.repair = Repair(self.inbox, now=0.0)
         self.clock = 0.0
@@ -83,7 +83,7 @@ def test_the_first_question_is_for_everything_behind_the_position():
     consumer = Consumer()
     consumer.wait(STEP_S, nobody)
     assert consumer.asked[0][1] == Question(None, 0, None)
-    resumed = Consumer(StreamPosition(epoch=3, sequence=7, ended=False))
+    resumed = Consumer(Position(3, 7, ended=False))
     resumed.wait(STEP_S, nobody)
     assert resumed.asked[0][1] == Question(3, 8, None)
 
@@ -216,6 +216,6 @@ def test_any_network_any_loss_everything_arrives(seed, loss, answers_lost, late)
 
 @pytest.mark.parametrize("ended", [True, False])
 def test_a_checkpoint_that_had_ended_is_complete(ended):
-    consumer = Consumer(StreamPosition(epoch=0, sequence=4, ended=ended))
+    consumer = Consumer(Position(0, 4, ended=ended))
     consumer.wait(10.0, nobody)
     assert (len(consumer.asked) == 1) is ended
