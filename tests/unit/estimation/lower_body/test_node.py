@@ -1,6 +1,7 @@
 import json
 import math
 import sys
+from functools import cache
 from pathlib import Path
 
 import numpy as np
@@ -75,24 +76,38 @@ def test_live_view_tells_what_to_do_and_shows_the_bones(undisturbed) -> None:
     assert np.median(np.diff(times)) == 40_000_000
 
 
-@pytest.mark.parametrize("estimator", list(LOWER_BODY_ESTIMATORS))
-@pytest.mark.parametrize("split", [60, 200, 320, 700])
-def test_split_and_resume_is_identical(estimator: str, split: int) -> None:
+SPLITS = (60, 200, 320, 700)
+
+
+@cache
+def frozen(estimator: str):
+    """A node that was frozen at each split, what it said, and what was kept of it."""
     description = walks.describe(estimator=estimator)
-    stream = walks.messages(description, walks.walk()[1])
-    whole = walks.run(LowerBodyNode(description), stream)
-    first, second = LowerBodyNode(description), LowerBodyNode(description)
-    outputs = [output for message in stream[:split] for output in first.step(message)]
-    second.restore(json.loads(json.dumps(first.snapshot())))
-    outputs += walks.run(second, stream[split:])
-    assert walks.text(outputs) == walks.text(whole)
-    assert second.rejections() == first.rejections()
+    node = LowerBodyNode(description)
+    outputs, kept = walks.run_and_freeze(node, walks.messages(description, walks.walk()[1]), SPLITS)
+    return node, walks.text(outputs), kept
 
 
-def test_two_sessions_interleaved_equal_each_alone() -> None:
+@pytest.mark.parametrize("estimator", list(LOWER_BODY_ESTIMATORS))
+@pytest.mark.parametrize("split", SPLITS)
+def test_split_and_resume_is_identical(estimator: str, split: int) -> None:
+    node, whole, kept = frozen(estimator)
+    description = walks.describe(estimator=estimator)
+    resumed = LowerBodyNode(description)
+    resumed.restore(json.loads(kept[split].state))
+    outputs = walks.run(resumed, walks.messages(description, walks.walk()[1])[split:])
+    assert walks.text(outputs) == whole[kept[split].outputs :]
+    assert resumed.rejections() == node.rejections()
+
+
+def test_to_be_frozen_changes_nothing(undisturbed) -> None:
+    assert frozen("ekf")[1] == walks.text(undisturbed)
+
+
+def test_two_sessions_interleaved_equal_each_alone(undisturbed) -> None:
     description = walks.describe()
     streams = [walks.messages(description, walks.walk(seed=seed)[1]) for seed in (0, 1)]
-    alone = [walks.run(LowerBodyNode(description), stream) for stream in streams]
+    alone = [undisturbed, walks.run(LowerBodyNode(description), streams[1])]
     nodes = [LowerBodyNode(description) for _ in streams]
     mixed: list[list] = [[], []]
     for pair in zip(*streams, strict=True):
