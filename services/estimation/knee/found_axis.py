@@ -117,7 +117,12 @@ class FoundAxis:
             if self._since_declared_s >= DECLARE_S or self._axis.reading().datum is not Datum.SET:
                 self._axis.declare_standing(self._declared)
                 self._since_declared_s = 0.0
-        return self._axis.step(kept.rate, kept.force, kept.dt_s)
+        slips = self._axis.slips
+        reading = self._axis.step(kept.rate, kept.force, kept.dt_s)
+        if self._axis.slips > slips:
+            # A sensor that slipped no longer lies as it did in that standing.
+            self._declared, self._straight = None, None
+        return reading
 
     def _is_axis_known(self, reading: KneeReading) -> bool:
         return self._axis.has_angle and reading.axis_std < self._axis.parameters.axis_to_believe
