@@ -1,6 +1,5 @@
 """How two measurements of one angle agree: the error analysis of McGrath et al. 2018, sections 3.3 and 3.5."""
 
-from collections.abc import Mapping
 from typing import NamedTuple
 
 import numpy as np
@@ -64,18 +63,6 @@ def bland_altman(estimate: Array, truth: Array) -> BlandAltman:
         bias, bias - LIMITS_SD * spread, bias + LIMITS_SD * spread, r * r, float(slope), float(intercept),
         len(difference), _no_bias(bias, spread, len(difference)),
     )  # fmt: skip
-
-
-def per_trial(trials: Mapping[str, tuple[Array, Array]]) -> dict[str, Errors]:
-    """Errors of each trial (estimate, truth) and, under "total", of all samples together (table 1).
-
-    Raises:
-        ValueError: a trial has no sample that both measured.
-    """
-    table = {name: errors(estimate, truth) for name, (estimate, truth) in trials.items()}
-    estimates = np.concatenate([estimate for estimate, _ in trials.values()])
-    truths = np.concatenate([truth for _, truth in trials.values()])
-    return {**table, "total": errors(estimates, truths)}
 
 
 def unwrapped_error(estimate: Array, truth: Array) -> Array:

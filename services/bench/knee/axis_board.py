@@ -164,7 +164,7 @@ def _methods(recording: KneeRecording) -> dict[str, Callable[[KneeRecording], Ar
         methods["PCA, true orientations"] = lambda part: peers.mcgrath_as_measured(part).axes
     if peers.missing("vqf") is None:
         methods["PCA on VQF"] = lambda part: peers.mcgrath(part).axes
-        methods["PCA on VQF + hinge"] = lambda part: peers.with_hinge(part._replace(orientations=None)).axes
+        methods["PCA on VQF + hinge"] = lambda part: peers.with_hinge(part, is_told=False).axes
     if peers.missing("qmt") is None:
         methods["Olsson (qmt)"] = peers.olsson_axis
     return methods

@@ -76,15 +76,15 @@ def olsson_axis(recording: KneeRecording) -> Array:
     return np.stack([np.ravel(first), np.ravel(second)])
 
 
-def with_hinge(recording: KneeRecording, by: str = "VQF") -> PeerResult:
+def with_hinge(recording: KneeRecording, by: str = "VQF", *, is_told: bool = True) -> PeerResult:
     """One of FILTERS; axis by principal components and heading by the hinge over the whole recording.
 
-    Where orientations came with the recording they tell the heading once, at the start.
+    Where orientations came with the recording they tell the heading once, at the start, if it `is_told`.
     """
     begin = time.thread_time()
     thigh, shank = orientations(recording, by)
     start = None
-    if recording.orientations is not None:
+    if is_told and recording.orientations is not None:
         start = heading_between(thigh[START], shank[START], *(known[START] for known in recording.orientations))
     relative, axes = tie_headings(thigh, shank, recording.rate, recording.rate_hz, start)
     return PeerResult(_twist(relative, axes), axes, (time.thread_time() - begin) / len(thigh))
@@ -129,6 +129,7 @@ def _twist(R_thigh_from_shank: Array, axes: Array) -> Array:
 METHODS: dict[str, tuple[tuple[str, ...], Callable[[KneeRecording], PeerResult]]] = {
     "McGrath": ((), mcgrath_as_measured),
     "McGrath on VQF": (("vqf",), mcgrath),
+    "VQF + hinge, heading not told": (("vqf",), partial(with_hinge, is_told=False)),
     **{f"{name} + hinge": ((library,), partial(with_hinge, by=name)) for name, (_, library) in FILTERS.items()},
     "VQF, Olsson axis, qmt heading": (("vqf", "qmt"), qmt_heading),
     "dfjimu MEKF": (("dfjimu",), dfjimu_mekf),

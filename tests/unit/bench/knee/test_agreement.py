@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from services.bench.knee.agreement import bland_altman, errors, per_trial, unwrapped_error
+from services.bench.knee.agreement import bland_altman, errors, unwrapped_error
 
 
 def test_a_constant_offset_is_absolute_error_only():
@@ -30,22 +30,23 @@ def test_limits_hold_95_percent_of_normal_differences():
     assert result.intercept == pytest.approx(-2.0, abs=0.05)
     assert result.bias == pytest.approx(1.0, abs=0.05)
     assert result.r_squared > 0.998
+    assert result.bias_p < 1e-6
     plain = bland_altman(truth + draw.normal(1.0, 2.0, 20000), truth)
     assert (plain.lower_limit, plain.upper_limit) == pytest.approx((1.0 - 3.92, 1.0 + 3.92), abs=0.1)
+
+
+def test_a_bias_within_its_scatter_is_none():
+    draw = np.random.default_rng(1)
+    truth, noise = draw.uniform(0.0, 60.0, 400), draw.normal(0.0, 2.0, 400)
+    assert bland_altman(truth + noise - noise.mean(), truth).bias_p == pytest.approx(1.0)
+    assert bland_altman(truth, truth).bias_p == 1.0
+    assert bland_altman(truth + 1.0, truth).bias_p < 1e-6
 
 
 @pytest.mark.parametrize("truth", [[1.0, 2.0], [3.0, 3.0, 3.0]])
 def test_agreement_needs_a_truth_that_varies(truth):
     with pytest.raises(ValueError, match="three samples"):
         bland_altman(np.array(truth), np.array(truth))
-
-
-def test_the_total_of_trials_is_over_all_samples():
-    table = per_trial({"1": (np.ones(10), np.zeros(10)), "2": (-np.ones(30), np.zeros(30))})
-    assert table["1"].bias == 1.0
-    assert table["total"].bias == pytest.approx(-0.5)
-    assert table["total"].absolute_rmse == pytest.approx(1.0)
-    assert table["total"].samples == 40
 
 
 def test_an_error_over_the_half_turn_is_small():
