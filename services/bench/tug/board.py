@@ -21,7 +21,7 @@ WALKS = (
 NOTE = (
     "Times of synthetic tests against exact truth; a movement begins and ends at 5 % of its peak rate. Parameters were "
     f"chosen on seeds 3 and 100 to 115 with other cases; scored on seeds {', '.join(map(str, SCORED_SEEDS))}. A single "
-    "leg does not see the trunk lead the rise: its first motion is taken from a share that the literature gives, and "
+    "leg does not see the trunk lead the rise: its first motion is taken from an assumed share of the rise, and "
     "claims a deviation as large."
 )
 

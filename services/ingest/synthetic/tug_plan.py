@@ -61,7 +61,7 @@ class TruePhase(NamedTuple):
 class RiseParts(NamedTuple):
     """When the trunk leans forward, the thighs turn upright and the trunk comes up, s from and to.
 
-    First the trunk gains speed over the seat, then the body is lifted (Schenkman 1990).
+    First the trunk gains speed over the seat, then the body is lifted (the phases of Schenkman 1990).
     """
 
     forward: tuple[float, float]

@@ -34,8 +34,8 @@ class TimedUpAndGoParameters:
     lean_rate: float = 0.25
     """rad/s, least peak at which the trunk's lean is part of rising."""
     lead: float = 0.55
-    """durations of the thighs' movement by which the trunk begins before them, where no sensor sees the trunk: a third
-    of rising passes before the seat is left (Schenkman 1990)."""
+    """durations of the thighs' movement by which the trunk begins before them, where no sensor sees the trunk. It moves
+    alone until the seat is left (Schenkman 1990); that this is about a third of rising is assumed."""
     lead_std: float = 0.2
     """durations, spread of that from person to person."""
     rise_std_s: float = 0.06
