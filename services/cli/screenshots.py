@@ -57,9 +57,9 @@ def _take_all(page: Chrome, url: str, settings: BusSettings, folder: Path) -> No
         walk, timed = (live.start_session(bus, spec, None).session for spec in (SHORT, TIMED))
         now = (LONG[0], KNEE, EXERCISE, *LONG[1:], *_recorded())
         lower_body, knee, exercise, *_ = [live.start_session(bus, spec, 1.0).session for spec in now]
-    camera.take("live", f"/#/sessions/{lower_body}", lambda: live_now() and not shown(".numbers td", "–"))
     camera.take("live_knee", f"/#/sessions/{knee}", lambda: live_now() and shown(".knee-label", "°"))
     camera.take("live_exercise", f"/#/sessions/{exercise}", lambda: live_now() and shown(".counter dd", "/min"))
+    camera.take("live", f"/#/sessions/{lower_body}", lambda: live_now() and not shown(".numbers td", "–"))
     camera.take("sessions", "/", lambda: shown(".card .chip", "Live"))
     camera.take("report", f"/#/sessions/{walk}", finished)
     camera.take("report_timed", f"/#/sessions/{timed}", lambda: finished() and shown("th", "Walk back"))
@@ -86,7 +86,8 @@ class _Camera:
         return any(text in each.text for each in self.page.find_elements(By.CSS_SELECTOR, selector))
 
     def is_live(self) -> bool:
-        return self.shown(".session-head .chip", "Live")
+        grey = self.page.find_elements(By.CSS_SELECTOR, "td.stale")
+        return self.shown(".session-head .chip", "Live") and not any(each.is_displayed() for each in grey)
 
     def is_finished(self) -> bool:
         return self.shown(".session-head .chip", "Finished") and self.shown(".files", "raw")

@@ -6,7 +6,7 @@ import { Stage } from "./stage.js";
 import { degrees, number } from "./units.js";
 
 /** px per m in standing and in sitting, for a whole body and for legs alone. */
-const SCALES = { body: [285, 285], legs: [370, 300] };
+const SCALES = { body: [285, 285], legs: [330, 300] };
 const WIDTH = 380;
 const FLOOR = 428;
 const FAN_M = 0.17;
