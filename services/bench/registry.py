@@ -105,11 +105,19 @@ def tug(json_path: Path | None = None, *subject: str) -> Scoreboard:
     return run(json_path, *subject)
 
 
+def kinect(json_path: Path | None = None, *subject: str) -> Scoreboard:
+    """The whole body from a depth camera: simulated tasks, recordings, methods side by side, cost."""
+    from services.bench.kinect.board import run
+
+    return run(json_path, *subject)
+
+
 SCOREBOARDS: dict[str, Callable[..., Scoreboard]] = {
     "accuracy": accuracy,
     "chain": chain,
     "events": events,
     "joukov": joukov,
+    "kinect": kinect,
     "knee": knee,
     "loss": loss,
     "recovery": recovery,

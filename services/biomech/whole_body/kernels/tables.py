@@ -112,7 +112,8 @@ def empty_update(width: int) -> Update:
     return Update(
         empty_pose(), np.zeros((BIASES, KINEMATIC)), np.zeros((BIASES, KINEMATIC)),
         np.zeros(CENTRES, dtype=np.int64), np.zeros(1, dtype=np.int64), np.zeros((CENTRES, 3)), np.zeros(CENTRES),
-        np.zeros((rows, width)), np.zeros((KINEMATIC, rows)), np.zeros((rows, rows)), np.zeros(rows), np.zeros(rows), np.zeros(width), np.zeros(2),
+        np.zeros((rows, width)), np.zeros((KINEMATIC, rows)), np.zeros((rows, rows)),
+        np.zeros(rows), np.zeros(rows), np.zeros(width), np.zeros(2),
     )  # fmt: skip
 
 
