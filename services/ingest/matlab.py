@@ -32,12 +32,11 @@ def read_columns(path: Path, columns: Sequence[str]) -> NDArray[np.float64]:
 
 
 def _read(path: Path) -> dict[str, Any]:
-    try:
-        contents: dict[str, Any] = loadmat(path, squeeze_me=True, struct_as_record=False)
-    except FileNotFoundError:
-        raise
-    except Exception as error:  # scipy raises whatever its parser stumbles over
-        raise UnreadableFile(f"{place(path)}: {error}; the file is damaged or not MATLAB's version 5") from error
+    with path.open("rb") as file:
+        try:
+            contents: dict[str, Any] = loadmat(file, squeeze_me=True, struct_as_record=False)
+        except Exception as error:  # scipy raises whatever its parser stumbles over
+            raise UnreadableFile(f"{place(path)}: {error}; the file is damaged or not MATLAB's version 5") from error
     return contents
 
 
@@ -53,7 +52,7 @@ def _column(path: Path, contents: dict[str, Any], name: str) -> NDArray[np.float
     table = np.asarray(value)
     if not way or table.dtype.kind not in "fiub" or table.ndim not in (1, 2):
         raise MissingColumn(f"{place(path)}: column {name!r} is no table of numbers; write variable.field.number")
-    rows = table.reshape(len(table), -1)
+    rows = table[:, None] if table.ndim == 1 else table
     if not number.isascii() or not number.isdecimal() or not 1 <= int(number) <= rows.shape[1]:
         raise MissingColumn(f"{place(path)}: column {name!r} counts from 1 to {rows.shape[1]}")
     return np.asarray(rows[:, int(number) - 1], dtype=np.float64)
