@@ -28,6 +28,8 @@ class Closed(StrEnum):
     """On the resting side again."""
     OTHER_POSTURE = "other_posture"
     """The knee was as before, the thigh was not: the person sat down or stood up on the way."""
+    FROM_A_HOLD = "from_a_hold"
+    """The knee was extended and held when it was first seen: on a thigh that is level and still, a knee rests bent."""
     HELD = "held"
     """Resting on the far side for longer than a hold."""
     ENDLESS = "endless"
@@ -146,13 +148,25 @@ class ExcursionDetector:
         rested = is_back and come_back >= p.rested_share * way and still_s >= p.still_s
         if turned or rested:
             if abs(away.nearest.thigh - away.home.thigh) > p.posture_change:
-                return self._turned_round(away, point)
+                return self._turned_round(away, point, Closed.OTHER_POSTURE)
+            if away.sign > 0 and self._hangs_from_level_thigh(away):
+                return self._turned_round(away, point, Closed.FROM_A_HOLD)
             return self._came_home(away, point, resting=not turned)
+        if self.state.usual == 0 and still_s >= p.seated_s and self._has_sat_down(away.home, point):
+            return self._settled(away, point, Closed.OTHER_POSTURE)
         if still_s >= p.longest_hold_s:
             return self._settled(away, point, Closed.HELD)
         if point.captured_ns - away.home.captured_ns > p.longest_s * 1e9:
             return self._settled(away, point, Closed.ENDLESS)
         return None
+
+    def _hangs_from_level_thigh(self, away: Away) -> bool:
+        thighs = (away.home.thigh, away.farthest.thigh, away.nearest.thigh)
+        return min(thighs) > self._parameters.level_thigh and max(thighs) - min(thighs) < self._parameters.still_thigh
+
+    def _has_sat_down(self, home: Point, now: Point) -> bool:
+        p = self._parameters
+        return home.thigh < p.posture_change and now.thigh > p.level_thigh
 
     def _came_home(self, away: Away, point: Point, *, resting: bool) -> Excursion:
         found = away.closed(Closed.BACK)
@@ -162,15 +176,16 @@ class ExcursionDetector:
             self.state = replace(self.state, away=Away(away.sign, away.nearest, point, point), usual=away.sign)
         return found
 
-    def _turned_round(self, away: Away, point: Point) -> Excursion:
+    def _turned_round(self, away: Away, point: Point, how: Closed) -> Excursion:
         """The far side is the new resting side; what looked like the way back is the way out from it."""
         new = Away(-away.sign, away.farthest, away.nearest, point)
         self.state = replace(self.state, away=new, usual=-away.sign)
-        return away.closed(Closed.OTHER_POSTURE)
+        return away.closed(how)
 
     def _settled(self, away: Away, point: Point, how: Closed) -> Excursion:
         """Wherever the knee is now is the new resting side."""
-        self.state = ExcursionState(point, point, self.state.rest, rested=how is Closed.HELD, usual=0)
+        rested = how is not Closed.ENDLESS
+        self.state = ExcursionState(point, point, self.state.rest, rested=rested, usual=0)
         return away.closed(how)
 
     def snapshot(self) -> State:

@@ -20,6 +20,7 @@ PARTIAL = "less than half of the usual range"
 STEP = "a step: the thigh swung"
 NOT_BACK = {
     Closed.OTHER_POSTURE: "the person sat down or stood up",
+    Closed.FROM_A_HOLD: ENDS_APART,
     Closed.HELD: "the knee came to rest elsewhere",
     Closed.ENDLESS: "too slow to be a repetition",
 }

@@ -50,8 +50,16 @@ class RepetitionParameters:
     like a movement as soon as it reaches `turn_floor`."""
 
     posture_change: float = 0.6
-    """rad (34 deg) by which the thigh's inclination may differ between both ends; sitting down turns it by 60 and
-    more, squats and slides bring it back (proposal)."""
+    """rad (34 deg) by which the thigh's inclination may differ between both ends, and below which a thigh stands; sitting
+    down turns it by 60 and more, squats and slides bring it back (proposal)."""
+    level_thigh: float = 1.0
+    """rad (57 deg) of inclination from which on a thigh is level, as on a chair; standing thighs stay below 30 deg."""
+    still_thigh: float = 0.35
+    """rad (20 deg) within which a thigh is still while its knee moves; in a heel slide it turns by 45."""
+    seated_s: float = 3.0
+    """s of rest on level thighs after which a person who stood has sat down, before there were repetitions; holds of a
+    first squat are shorter (proposal)."""
+
     step_share: float = 0.35
     """share of the knee's range by which the thigh's inclination, half-way, differs between extending and flexing, from
     which on it was a step. Walking makes 0.55 to 0.75; exercises take the same way back, and pedals make 0.22."""

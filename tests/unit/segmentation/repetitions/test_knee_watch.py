@@ -161,6 +161,32 @@ def test_sitting_down_changes_the_resting_side():
     assert all(one.start_angle > one.turn_angle for one in valid(made))
 
 
+def test_a_seated_knee_first_seen_in_a_hold_still_rests_bent():
+    each = there_and_back(SEATED, STANDING, 2.0, hold_s=5.0, rest_s=2.0)
+    knees = np.concatenate([held(STANDING, 3.0), moved(STANDING, SEATED, 1.0), held(SEATED, 2.0), *[each] * 4])
+    made = found_in(knees, held(LEVEL, len(knees) / RATE_HZ))
+    assert [one.rejected_because for one in made] == [knee_watch.ENDS_APART] + [None] * 4
+    assert all(one.start_angle > one.turn_angle for one in valid(made))
+
+
+def test_a_heel_slides_out_from_an_extended_knee():
+    knees = np.concatenate([held(STANDING, 3.0), *[there_and_back(STANDING, SEATED, 3.0, hold_s=3.0)] * 4])
+    thighs = LEVEL + 0.5 * (knees - STANDING)
+    made = found_in(knees, thighs)
+    assert [one.valid for one in made] == [True] * 4
+    assert all(one.start_angle < one.turn_angle for one in made)
+
+
+def test_whoever_sits_down_first_stands_up_from_the_chair():
+    knees = np.concatenate(
+        [held(STANDING, 5.0), moved(STANDING, SEATED, 2.0), held(SEATED, 5.0)]
+        + [there_and_back(SEATED, STANDING, 3.0, rest_s=0.4)] * 5
+    )
+    made = found_in(knees, LEVEL * (knees - STANDING) / (SEATED - STANDING))
+    assert [one.rejected_because for one in made] == ["the person sat down or stood up"] + [None] * 5
+    assert all(one.start_angle > one.turn_angle for one in valid(made))
+
+
 def test_sit_to_stand_is_a_repetition():
     knees = np.concatenate([held(SEATED, 3.0), *[there_and_back(SEATED, STANDING, 3.0, hold_s=2.0)] * 5])
     thighs = LEVEL * (knees - STANDING) / (SEATED - STANDING)
