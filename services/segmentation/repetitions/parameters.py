@@ -5,7 +5,7 @@ from dataclasses import dataclass
 
 @dataclass(frozen=True, slots=True)
 class RepetitionParameters:
-    """Chosen on synthetic exercises (seeds below 100); `ambula bench repetitions` scores others."""
+    """Chosen on synthetic exercises (seeds below 300); `ambula bench repetitions` scores others."""
 
     smoothing_s: float = 0.2
     """s over which the angle is averaged before turns are looked for: one period of a tremor of 5 Hz, of which
@@ -50,8 +50,8 @@ class RepetitionParameters:
     like a movement as soon as it reaches `turn_floor`."""
 
     posture_change: float = 0.6
-    """rad (34 deg) by which the thigh's inclination may differ between both ends, and below which a thigh stands; sitting
-    down turns it by 60 and more, squats and slides bring it back (proposal)."""
+    """rad (34 deg) by which the thigh's inclination may differ between both ends, and below which a thigh stands.
+    Sitting down turns it by 60 and more; squats and slides bring it back (proposal)."""
     level_thigh: float = 1.0
     """rad (57 deg) of inclination from which on a thigh is level, as on a chair; standing thighs stay below 30 deg."""
     still_thigh: float = 0.35
