@@ -100,9 +100,9 @@ def test_the_page_of_the_api_works_without_the_internet(site, page):
     assert browsers.hosts_asked(page) == {site.url.removeprefix("http://")}
 
 
-def begin(url: str, source: str) -> str:
+def begin(url: str, source: str, speed: float | None = 1.0) -> str:
     """A session asked for by REST; its id."""
-    body = json.dumps({"source": source}).encode()
+    body = json.dumps({"source": source, "speed": speed}).encode()
     request = urllib.request.Request(f"{url}/v1/sessions", body, {"Content-Type": "application/json"})
     with urllib.request.urlopen(request, timeout=30) as answer:
         return str(json.load(answer)["id"])
@@ -197,3 +197,28 @@ def test_with_reduced_motion_the_leg_is_drawn_on_paper_and_the_task_can_be_chose
         assert shown(page, ".strip h2") == ["Timed up and go"]
         keep(page, "knee-paper")
         assert browsers.complaints(page) == []
+
+
+def test_a_timed_test_is_reported_by_its_parts_and_an_exercise_by_its_repetitions(site, page):
+    timed = begin(site.url, "synthetic:tug?worn=2&seed=4&pause=3", speed=None)
+    exercise = begin(site.url, "synthetic:knee?duration=30&seed=2", speed=None)
+    page.get(f"{site.url}/#/sessions/{timed}")
+    wait(page, lambda: text(page, ".session-head .chip") == "Finished", "the timed test ends")
+    drawing = "section[aria-label='Timed up and go'] svg"
+    wait(page, lambda: page.find_elements(By.CSS_SELECTOR, f"{drawing} rect"), "the bar is drawn")
+    assert len(page.find_elements(By.CSS_SELECTOR, f"{drawing} rect")) == 5
+    told = page.find_element(By.CSS_SELECTOR, drawing).get_attribute("aria-label")
+    assert told.startswith("Attempt 1: Stand up ")
+    assert "in all" in told
+    assert shown(page, "section[aria-label='Timed up and go'] tbody th") == ["Attempt 1"]
+    assert "1 attempt completed" in text(page, ".quality")
+
+    page.get(f"{site.url}/#/sessions/{exercise}")
+    wait(page, lambda: text(page, ".session-head .chip") == "Finished", "the exercise ends")
+    bars = "section[aria-label=Repetitions] svg rect"
+    wait(page, lambda: len(page.find_elements(By.CSS_SELECTOR, bars)) > 3, "the repetitions are drawn")
+    rows = page.find_elements(By.CSS_SELECTOR, "section[aria-label=Repetitions] tbody tr")
+    assert len(rows) == len(page.find_elements(By.CSS_SELECTOR, bars))
+    assert "Peak flexion" in text(page, "section[aria-label=Exercise]")
+    assert shown(page, "section[aria-label=Metrics]") == []
+    assert browsers.complaints(page) == []

@@ -13,7 +13,13 @@ export class ChartPanel {
     this.node = el(
       "section",
       { class: "panel chart-panel", "aria-label": title },
-      el("div", { class: "panel-head" }, el("h2", {}, title), el("span", { class: "spring" }), ...Object.values(this.now)),
+      el(
+        "div",
+        { class: "panel-head" },
+        el("h2", {}, title),
+        el("span", { class: "spring" }),
+        ...Object.values(this.now),
+      ),
       this.host,
     );
   }

@@ -64,12 +64,16 @@ function addLabels(points, segments, sides) {
   const both = sides.length === 2;
   for (const side of sides) {
     const bones = [segments[`thigh_${side}`], segments[`shank_${side}`]];
-    const [fronts, rights] = [[1, 0, 0], [0, 0, 1]].map((axis) =>
-      unit(bones.map((bone) => rotate(bone.quat_world_from_segment, axis)).reduce(plus)),
-    );
+    const [fronts, rights] = [
+      [1, 0, 0],
+      [0, 0, 1],
+    ].map((axis) => unit(bones.map((bone) => rotate(bone.quat_world_from_segment, axis)).reduce(plus)));
     const outward = side === "left" ? -1 : 1;
     const ahead = times(fronts, LABEL.ahead * (both ? outward : 1));
-    points[`label_${side}`] = plus(points[`knee_${side}`], plus(ahead, times(rights, both ? outward * LABEL.apart : 0)));
+    points[`label_${side}`] = plus(
+      points[`knee_${side}`],
+      plus(ahead, times(rights, both ? outward * LABEL.apart : 0)),
+    );
   }
 }
 

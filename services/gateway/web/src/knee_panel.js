@@ -116,7 +116,13 @@ class Scale {
     const mark = { fill: SIDE_COLOUR[side], stroke: "#fff", "stroke-width": 2, visibility: "hidden" };
     this.now = svg("circle", { cy: 6.5, r: 7.5, ...mark });
     const ticks = TICKS.flatMap((tick) => {
-      const label = svg("text", { x: place(tick), y: 17 + letters, "text-anchor": "middle", "font-size": letters, fill: INK });
+      const label = svg("text", {
+        x: place(tick),
+        y: 17 + letters,
+        "text-anchor": "middle",
+        "font-size": letters,
+        fill: INK,
+      });
       label.append(`${tick}°`);
       return [svg("line", { x1: place(tick), x2: place(tick), y1: 12, y2: 17, stroke: INK, opacity: 0.5 }), label];
     });

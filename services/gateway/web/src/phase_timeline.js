@@ -74,7 +74,10 @@ function part(whole, from, y, place) {
 function whisker({ end_s, end_std_s }, from, y, place) {
   const [left, right] = [place(end_s - from - end_std_s), place(end_s - from + end_std_s)];
   const low = y + ROW.height + 3;
-  return svg("path", { d: `M ${left} ${low - 3} v 6 M ${left} ${low} H ${right} M ${right} ${low - 3} v 6`, stroke: SOFT_INK });
+  return svg("path", {
+    d: `M ${left} ${low - 3} v 6 M ${left} ${low} H ${right} M ${right} ${low - 3} v 6`,
+    stroke: SOFT_INK,
+  });
 }
 
 function inWords({ attempt, phases, from, to }) {
@@ -105,7 +108,9 @@ export function phaseTable(attempts, metrics = []) {
   );
   if (means.every(Boolean)) {
     const cells = means.map(({ value, spread }) => seconds(value, spread));
-    rows.push(el("tr", { class: "mean-row" }, el("th", { scope: "row" }, `Mean of ${means[0].strides} attempts`), ...cells));
+    rows.push(
+      el("tr", { class: "mean-row" }, el("th", { scope: "row" }, `Mean of ${means[0].strides} attempts`), ...cells),
+    );
   }
   const columns = ["", ...names.map((name) => `${PHASES[name]}#`), "Total#"];
   return table(columns, el("tbody", {}, ...rows));

@@ -48,7 +48,13 @@ export class RepetitionChart {
         const paint = each.valid
           ? { fill: SIDE_COLOUR[each.side], "fill-opacity": 0.75 }
           : { fill: "none", stroke: INVALID, "stroke-width": 2 };
-        const box = { x: across(place + 1) - bar / 2, y: up(largest), width: bar, height: up(least) - up(largest), rx: 3 };
+        const box = {
+          x: across(place + 1) - bar / 2,
+          y: up(largest),
+          width: bar,
+          height: up(least) - up(largest),
+          rx: 3,
+        };
         return svg("rect", { ...box, ...paint });
       }),
     ];

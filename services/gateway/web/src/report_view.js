@@ -38,7 +38,12 @@ export class ReportView {
       this.head(),
       this.tiles,
       this.timed,
-      el("div", { class: "report" }, el("div", { class: "column" }, this.exercise, this.strides, this.filesPanel()), this.curves),
+      el(
+        "div",
+        { class: "report" },
+        el("div", { class: "column" }, this.exercise, this.strides, this.filesPanel()),
+        this.curves,
+      ),
     );
     this.load();
   }

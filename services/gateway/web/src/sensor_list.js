@@ -6,7 +6,13 @@ export class SensorList {
   constructor() {
     this.list = el("ul", { class: "sensors" });
     this.datum = el("p", { class: "quiet datum", hidden: true });
-    this.node = el("section", { class: "panel", "aria-label": "Sensors" }, el("h2", {}, "Sensors"), this.list, this.datum);
+    this.node = el(
+      "section",
+      { class: "panel", "aria-label": "Sensors" },
+      el("h2", {}, "Sensors"),
+      this.list,
+      this.datum,
+    );
   }
 
   /** `segments` is the segment of each sensor, by name. */

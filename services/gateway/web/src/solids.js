@@ -143,7 +143,9 @@ function flat(colour, opacity) {
 function reshape(mesh, directions, inner, outer) {
   const { geometry } = mesh;
   if (!geometry.index) {
-    const corners = directions.slice(1).flatMap((_, i) => [2 * i, 2 * i + 1, 2 * i + 2, 2 * i + 1, 2 * i + 3, 2 * i + 2]);
+    const corners = directions
+      .slice(1)
+      .flatMap((_, i) => [2 * i, 2 * i + 1, 2 * i + 2, 2 * i + 1, 2 * i + 3, 2 * i + 2]);
     geometry.setIndex(corners);
     geometry.setAttribute("position", new BufferAttribute(new Float32Array(6 * directions.length), 3));
   }

@@ -21,7 +21,8 @@ const SHOWN = {
 export function shown(unit, name) {
   if (name.endsWith("_fraction")) return PERCENT;
   if (name.endsWith("_cv") || name.endsWith("_timing")) return { ...PERCENT, digits: 1 };
-  if (name.startsWith("strides_") || name.startsWith("repetitions_") || name === "tug_steps") return { factor: 1, unit: "", digits: 0 };
+  if (name.startsWith("strides_") || name.startsWith("repetitions_") || name === "tug_steps")
+    return { factor: 1, unit: "", digits: 0 };
   return SHOWN[unit] ?? { factor: 1, unit: unit === "1" ? "" : unit, digits: 2 };
 }
 

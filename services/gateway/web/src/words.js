@@ -84,7 +84,8 @@ export const headlineRank = ({ name }) => (HEADLINES.includes(name) ? HEADLINES.
 export function qualityText(metrics, { datum, task }) {
   const count = (name) =>
     metrics.filter((metric) => metric.name === name).reduce((sum, metric) => sum + (metric.value ?? 0), 0);
-  const told = ([name, words]) => (count(name) > 0 ? `${count(name)} ${words}` : null);
+  const told = ([name, words, one = words]) =>
+    count(name) > 0 ? `${count(name)} ${count(name) === 1 ? one : words}` : null;
   const listed = (counts) => counts.map(told).filter(Boolean).join(", ");
   const strides = listed(task === "knee_flexion" ? REPETITION_COUNTS : STRIDE_COUNTS);
   const facts = [listed(ATTEMPT_COUNTS), strides, datum ? `zero is ${datum}` : null].filter(Boolean);
@@ -92,17 +93,17 @@ export function qualityText(metrics, { datum, task }) {
 }
 
 const STRIDE_COUNTS = [
-  ["strides_counted", "strides count"],
+  ["strides_counted", "strides count", "stride counts"],
   ["strides_starting_or_stopping", "starting or stopping"],
   ["strides_turning", "while turning"],
   ["strides_rejected", "left out"],
 ];
 const ATTEMPT_COUNTS = [
-  ["tug_attempts", "attempts completed"],
+  ["tug_attempts", "attempts completed", "attempt completed"],
   ["tug_attempts_aborted", "not seen to their end"],
 ];
 const REPETITION_COUNTS = [
-  ["repetitions_counted", "repetitions count"],
+  ["repetitions_counted", "repetitions count", "repetition counts"],
   ["repetitions_rejected", "left out"],
 ];
 
