@@ -21,10 +21,10 @@ was turned past 180 deg, where an angle begins anew."""
 WALKS = {
     "walk with turns (NeuRA)": "neura_s02_walk",
     "the same, sensors on mid-shank": "neura_s02_walk_midshank",
-    "synthetic, slow": "synthetic:walk?speed=0.5&seed=211&duration=60",
-    "synthetic, usual": "synthetic:walk?speed=1.1&seed=212&duration=60",
-    "synthetic, fast": "synthetic:walk?speed=1.5&seed=213&duration=60",
-    "synthetic, one leg alone": "synthetic:walk?worn=2&speed=1.0&seed=214&duration=60",
+    "synthetic, slow": "synthetic:walk?speed=0.5&seed=311&duration=60",
+    "synthetic, usual": "synthetic:walk?speed=1.1&seed=312&duration=60",
+    "synthetic, fast": "synthetic:walk?speed=1.5&seed=313&duration=60",
+    "synthetic, one leg alone": "synthetic:walk?worn=2&speed=1.0&seed=314&duration=60",
 }
 NEAR_S = 0.5
 """s by which turns of the same repetition may differ."""

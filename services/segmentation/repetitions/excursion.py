@@ -162,7 +162,8 @@ class ExcursionDetector:
 
     def _hangs_from_level_thigh(self, away: Away) -> bool:
         thighs = (away.home.thigh, away.farthest.thigh, away.nearest.thigh)
-        return min(thighs) > self._parameters.level_thigh and max(thighs) - min(thighs) < self._parameters.still_thigh
+        turned, way = max(thighs) - min(thighs), abs(away.farthest.angle - away.home.angle)
+        return min(thighs) > self._parameters.level_thigh and turned < self._parameters.still_thigh * way
 
     def _has_sat_down(self, home: Point, now: Point) -> bool:
         p = self._parameters

@@ -54,8 +54,8 @@ class RepetitionParameters:
     Sitting down turns it by 60 and more; squats and slides bring it back (proposal)."""
     level_thigh: float = 1.0
     """rad (57 deg) of inclination from which on a thigh is level, as on a chair; standing thighs stay below 30 deg."""
-    still_thigh: float = 0.35
-    """rad (20 deg) within which a thigh is still while its knee moves; in a heel slide it turns by 45."""
+    still_thigh: float = 0.25
+    """share of the knee's way that a thigh may turn and still be still; in a heel slide it turns by half of it."""
     seated_s: float = 3.0
     """s of rest on level thighs after which a person who stood has sat down, before there were repetitions; holds of a
     first squat are shorter (proposal)."""
