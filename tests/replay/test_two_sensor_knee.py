@@ -6,12 +6,12 @@ import pytest
 from schemas.vocabulary import Side
 from services.bench.knee.hinge_board import FIRST_S, HINGE
 from services.bench.knee.recordings import KneeRecording, from_manifest, weygers
-from services.bench.knee.scores import FLEXION, FROM_SENSORS, STD, VALID, axis_errors, run_knee, score
-from services.bench.knee.worn_board import ALBORNO, FAN, PARAMETERS, SCORED_ALBORNO
+from services.bench.knee.scores import FLEXION, FROM_SENSORS, STD, VALID, Pass, axis_errors, run_knee, score
+from services.bench.knee.worn_board import ALBORNO, FAN, NEURA, PARAMETERS, SCORED_ALBORNO, STRAIGHT, WITH_TURN
 from services.ingest.errors import MissingFile
 
-HINGES = {"01": 1.5, "02": 1.0, "05": 1.2}
-"""deg, absolute, at zero shift where the truth is intact: 1.33, 0.82 and 1.13 were reached."""
+HINGES = {"01": 1.35, "02": 0.85, "05": 1.2}
+"""deg, absolute, at zero shift where the truth is intact: 1.24, 0.78 and 1.11 were reached."""
 
 
 def load(reader, *arguments) -> KneeRecording:
@@ -32,6 +32,7 @@ def test_hinge(trial):
     assert s.coverage > 0.95
     assert s.within_two_std > 0.95
     assert np.degrees(axis_errors(estimator.axes, recording.axes)).max() < 2.0
+    assert estimator.slips == 0
 
 
 def test_truth_of_one_hinge_is_broken_for_a_moment():
@@ -43,16 +44,36 @@ def test_drop_landings():
     recording = load(from_manifest, FAN, Side.LEFT)
     out, estimator = run_knee(recording, PARAMETERS)
     s = score(out[:, FLEXION], recording.flexion, recording.holds, out[:, VALID] > 0, out[:, STD])
-    assert np.degrees(s.unshifted.zero_mean_rmse) < 0.95
-    assert s.within_two_std > 0.9
+    assert np.degrees(s.unshifted.zero_mean_rmse) < 0.9
+    assert s.within_two_std > 0.95
     assert estimator.reading().is_sign_known
+    assert estimator.slips == 0
 
 
 def test_sit_to_stand():
     recording = load(from_manifest, ALBORNO, Side.LEFT)
-    out, _ = run_knee(recording, PARAMETERS)
+    out, estimator = run_knee(recording, PARAMETERS)
     frames = np.arange(len(out))
     asked = recording.holds & (frames >= SCORED_ALBORNO[0]) & (frames < SCORED_ALBORNO[1])
     s = score(out[:, FLEXION], recording.flexion, asked, out[:, VALID] > 0, out[:, STD])
-    assert np.degrees(s.unshifted.zero_mean_rmse) < 1.3
+    assert np.degrees(s.unshifted.zero_mean_rmse) < 1.1
     assert s.coverage == 1.0
+    assert estimator.slips == 0
+
+
+@pytest.mark.parametrize(("seen", "straight", "with_turn"), [(Pass.COLD, 3.3, 3.4), (Pass.SECOND, 3.5, 3.7)])
+def test_walk_with_a_turn(seen, straight, with_turn):
+    """3.16 and 3.20 were reached cold, 3.32 and 3.52 in a second pass; no slip is seen in soft tissue."""
+    errors = []
+    for side in Side:
+        recording = load(from_manifest, NEURA["neura"], side)
+        out, estimator = run_knee(recording, PARAMETERS, seen)
+        assert estimator.slips == 0
+        for frames in (STRAIGHT, WITH_TURN):
+            asked = np.zeros(len(out), dtype=np.bool_)
+            asked[frames] = recording.holds[frames]
+            s = score(out[:, FLEXION], recording.flexion, asked, out[:, VALID] > 0, out[:, STD])
+            errors.append(np.degrees(s.shifted.zero_mean_rmse))
+            assert s.within_two_std > 0.85
+    assert np.mean(errors[::2]) < straight
+    assert np.mean(errors[1::2]) < with_turn

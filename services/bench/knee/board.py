@@ -12,6 +12,8 @@ from services.bench.knee import (
     hinge_board,
     kam_board,
     soft_tissue_board,
+    trust_board,
+    walk_limits,
     worn_board,
 )
 from services.bench.report import Section, report_text, write_report
@@ -23,10 +25,12 @@ SUBJECTS: dict[str, Callable[[Progress], Section]] = {
     "fan": worn_board.fan_section,
     "alborno": worn_board.alborno_section,
     "neura": worn_board.neura_section,
+    "limits": walk_limits.limits_section,
     "kam": kam_board.kam_section,
     "axis": axis_board.axis_section,
     "grover": grover_board.grover_section,
     "soft_tissue": soft_tissue_board.soft_tissue_section,
+    "trust": trust_board.trust_section,
     "service": chain_board.chain_section,
 }
 HOW_TO_READ = """Two sensors, one knee. Beside ours stand the two published methods as they were written (McGrath,

@@ -27,9 +27,9 @@ HINGE = replace(KneeAxisParameters(), sign_evidence=0.0)
 """A bare hinge has no front: its sense is taken as it comes."""
 PARAGRAPHS = [
     "Hinge moved by hand, 50 Hz. Our parameters, sample_delay among them, were chosen on trial 02 (and on synthetic "
-    "legs); 01 and 05 were not. Ours is causal from the first sample and scored where it is valid; the others see the "
-    "whole recording before they say their axis. Absolute errors are in McGrath's datum (eq. 2), so each method's axis "
-    "error is in it.",
+    "legs, one on landings and steps, too); 01 and 05 were not. Ours is causal from the first sample and scored where "
+    "it is valid; the others see the whole recording before they say their axis. Absolute errors are in McGrath's "
+    "datum (eq. 2), so each method's axis error is in it.",
     "Trial 01: the markers of one body are taken for others in 5 frames, which alone costs any estimate 3.1 deg; its "
     "optics and its sensors drift apart by a third of a sample in a minute. Rows give zero shift and the best constant "
     "shift in quarter samples, the tables the best shift where the truth is intact.",

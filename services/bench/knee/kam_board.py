@@ -34,8 +34,9 @@ PARAGRAPHS = [
     "Ten steps of 1 s each, not contiguous: too short to level a sensor in. Each is played to and fro six times "
     "(backwards the rates change their sign), then scored on a last pass, offset removed, against lines between joint "
     "centres; axis, arms and biases are kept from step to step, and all steps are shown twice. Offline; the sense of "
-    "flexion is that which agrees, nothing else was chosen here. Axis: against the epicondyles, carried to the sensor "
-    "by fitting the markers' rate to the gyroscope. 'McGrath' has the maker's orientations and all steps.",
+    "flexion is that which agrees; how much the force of the instant levels was chosen with it, too. Axis: against "
+    "the epicondyles, carried to the sensor by fitting the markers' rate to the gyroscope. 'McGrath' has the maker's "
+    "orientations and all steps.",
 ]
 
 

@@ -42,8 +42,9 @@ PEERS = (
 PARAGRAPHS = {
     "fan": [
         "Drop landings, 100 Hz, 67 s. First and last 20 s of valid angle are compared for drift. The laboratory's knee "
-        "is 10 deg while standing. Nothing was chosen by these errors, but gates of tie and sign were set with it in "
-        f"view. {SEEN}", PEERS,
+        "is 10 deg while standing. How much the force of the instant levels (0.1 to 0.2 per second are alike) was "
+        "chosen with these errors, weygers 02 and single steps; gates of tie, sign and slip were set with it in view. "
+        f"{SEEN}", PEERS,
     ],
     "alborno": [
         "Sit-to-stand, 40 Hz, thigh and shank of the left leg; repetitions from 15.4 s on. Nothing was chosen by these "
@@ -51,7 +52,8 @@ PARAGRAPHS = {
     ],
     "neura": [
         "Thigh and lower shank, 100 Hz, one walk of 9.5 s; truth Plug-in-Gait, which differs by 4.2 deg on the left "
-        f"from the knee of joint centres. {SEEN}", PEERS,
+        "from the knee of joint centres. Nothing was chosen by it, though its errors were in view; `limits` says what "
+        f"they are made of. {SEEN}", PEERS,
     ],
 }  # fmt: skip
 
