@@ -107,7 +107,7 @@ class Attempts:
         outputs: list[TaskPhase] = []
         if state.phase is TaskPhaseKind.TURN:
             split = self._turns.split(trace, 0.0)
-            if split is not None and split[0].at_ns < sit.start_ns:
+            if split is not None and sit.start_ns - split[0].at_ns > self._parameters.least_back_s * 1e9:
                 outputs += self._end_turn(trace, split[0])
         if state.phase is TaskPhaseKind.WALK_BACK:
             outputs += self._next(TaskPhaseKind.TURN_TO_SIT, down)

@@ -94,6 +94,8 @@ class TimedUpAndGoParameters:
     """rad, about 70 degrees that make the turn before the chair."""
     turned: float = 1.75
     """rad, after which straight walking ends the turn."""
+    least_back_s: float = 0.5
+    """s from the end of the turn to sitting down; whoever sits sooner did not come back."""
     near: float = 0.21
     """rad, 12 degrees: the straight heading is left for good."""
     far: float = 0.52
