@@ -82,7 +82,7 @@ def test_a_lost_gateway_greys_the_numbers_and_comes_back_by_itself(site, page):
 
 def test_with_reduced_motion_the_body_is_drawn_on_paper(site):
     with browsers.open_browser(1366, 768, "--force-prefers-reduced-motion") as page:
-        start(page, site.url, "Walk, slow")
+        start(page, site.url, "Walk, slow", speed=QUICK)
         wait(page, lambda: text(page, ".session-head .chip") == "Live", "the session is live")
         lines = wait(page, lambda: page.find_elements(By.CSS_SELECTOR, ".stage svg line"), "the figure is drawn")
         places = set()
