@@ -12,7 +12,7 @@ from rich.table import Table
 from schemas.metrics import SessionMetrics
 from schemas.rhythm import KnownRhythm
 from schemas.session import WalkPath
-from schemas.vocabulary import Task
+from schemas.vocabulary import ESTIMATORS, Task
 from services.cli.console import err, out, told
 from services.ingest.choices import Choices
 
@@ -33,7 +33,7 @@ Source = Annotated[
 ]
 Estimator = Annotated[
     str | None,
-    typer.Option(help="ekf, rhythmic_ekf, rhythmic_ekf_joukov or joukov_published; default rhythmic_ekf"),
+    typer.Option(help=f"one of {', '.join(ESTIMATORS)}; default as the recording says"),
 ]
 Straight = Annotated[
     bool | None,

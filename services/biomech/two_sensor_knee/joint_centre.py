@@ -15,6 +15,9 @@ from services.biomech.two_sensor_knee.memory import Bench, FloatArray, Memory, R
 from services.biomech.two_sensor_knee.turns import low_pass_gain
 
 REFINEMENTS = 2
+LEVELLED_S = 4.0
+"""s of levelling after a gap in which nothing is learned of the joint: inclinations are wrong at first, and gravity in
+the wrong place looks like an acceleration."""
 IDLE, ON_GRID, SOLVED = 0, 1, 2
 """What a sample led to: nothing, products were added, the joint was solved for."""
 
@@ -35,6 +38,9 @@ def follow_joint(memory: Memory, bench: Bench, force: FloatArray, dt_s: float) -
     knee.since_solution_s += dt_s
     if knee.since_products_s < parameters.joint_interval_s - 0.5 * dt_s:
         return IDLE
+    if knee.has_angle > 0.0 and memory.levels[0].elapsed_s < LEVELLED_S:
+        knee.since_products_s = 0.0
+        return ON_GRID
     forgetting = exp(-knee.since_products_s / parameters.joint_memory_s)
     add_products(memory, forgetting, knee.since_products_s)
     knee.joint_moving_s *= forgetting

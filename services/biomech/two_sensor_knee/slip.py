@@ -16,6 +16,9 @@ from services.biomech.two_sensor_knee.memory import Bench, FloatArray, Memory, R
 ALIKE = 0.7
 """Cosine from which a new axis is still the old one, turned a little: its sense is known."""
 
+LEVELLED_S = 6.0
+"""s of levelling before anything is suspected: after a gap inclinations are wrong at first."""
+
 SHORT_ARM = 0.15
 """m. Shorter arms are known to some cm, whatever their length."""
 
@@ -32,6 +35,9 @@ def has_slipped(memory: Memory, bench: Bench, is_moving: bool, dt_s: float) -> b
                 late[i] = axis[i]
         iterate(slip.scatter[s], late)
         worst = min(worst, abs(late[0] * axis[0] + late[1] * axis[1] + late[2] * axis[2]))
+    if memory.levels[0].elapsed_s < LEVELLED_S:
+        slip.suspected_s = 0.0
+        return False
     if not is_moving or knee.moving_s < parameters.slip_settled_s:
         return False
     if slip.has_arms == 0.0:

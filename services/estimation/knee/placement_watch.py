@@ -14,7 +14,8 @@ from numpy.typing import NDArray
 
 from schemas.session import Placement, SensorDescription
 from schemas.vocabulary import Misplacement, Side
-from services.biomech.two_sensor_knee.placement import CLEAR_M, CLEAR_SHARE, are_swapped, leg_worn_on
+from services.biomech.two_sensor_knee.parameters import KneeAxisParameters
+from services.biomech.two_sensor_knee.placement import CLEAR_M, CLEAR_SHARE, leg_worn_on
 from services.estimation.knee.estimator import Evidence
 from services.estimation.knee.mounting import upward
 from services.estimation.parameters import KneeParameters
@@ -22,6 +23,8 @@ from services.flow.node import State
 
 Array = NDArray[np.float64]
 
+SHORTEST_ARM = KneeAxisParameters().shortest_arm
+"""m. Shorter arms were not seen well."""
 UPSIDE_DOWN = (Misplacement.THIGH_UPSIDE_DOWN, Misplacement.SHANK_UPSIDE_DOWN)
 WATCHED = (Misplacement.SWAPPED, *UPSIDE_DOWN, Misplacement.OTHER_LEG)
 
@@ -112,12 +115,14 @@ class PlacementWatch:
 
 
 def _swap_vote(evidence: Evidence) -> int:
+    """The knee lies below the thigh's sensor and above the shank's. The arm of a segment that rests stays unknown, and
+    short: then the other decides."""
     if evidence.arms is None:
         return 0
-    if are_swapped(evidence.arms, evidence.up):
-        return 1
-    above = np.sum(evidence.arms * evidence.up, axis=1)
-    return -1 if above[0] < -CLEAR_M and above[1] > CLEAR_M else 0
+    above = np.sum(evidence.arms * evidence.up, axis=1) * [1.0, -1.0]
+    long = np.linalg.norm(evidence.arms, axis=1) >= SHORTEST_ARM
+    votes = {int(np.sign(each)) if abs(each) > CLEAR_M else 0 for each in above[long]}
+    return votes.pop() if len(votes) == 1 else 0
 
 
 def _turn_vote(up: Array, wanted: Array | None) -> int:
