@@ -14,7 +14,7 @@ from services.biomech.whole_body.model import CENTRE_NAMES, DOF, MODEL
 from services.biomech.whole_body.multibody_kinematics import fit_frame, fit_recording
 from services.biomech.whole_body.observability import trunk_lean
 from services.biomech.whole_body.parameters import LIMITS_DEG, per_angle
-from services.biomech.whole_body.presets import CORRECTED, UNCONSTRAINED
+from services.biomech.whole_body.presets import CORRECTED, UNCONSTRAINED, settings_for
 from services.biomech.whole_body.start import (
     Start,
     fitted_start,
@@ -27,7 +27,8 @@ from services.biomech.whole_body.start import (
 Array = NDArray[np.float64]
 
 NOTE = (
-    "recorded: no settings were chosen on these recordings. KIMORE has no reference: jumps, lengths and limits only. "
+    "recorded: the calmer process noise of a start that is not standing was chosen with the KIMORE squat in view, "
+    "nothing else. It has no reference: jumps, lengths and limits only; lengths are held after 5 s. "
     "KERAAL is seated: only the lean of the trunk is compared"
 )
 STEP_DEG = 20.0
@@ -122,7 +123,8 @@ def kimore_rows() -> list[Row]:
         for method, found in kimore_methods(seen).items():
             rows += _kimore_figures(f"KIMORE {name}: {method}", found, detail=method != "raw geometry")
         start = first_start(seen)
-        ours = follow(seen, WholeBodyEkf(start, OURS))
+        settings = settings_for(standing=start.standing)
+        ours = follow(seen, WholeBodyEkf(start, settings))
         label = f"KIMORE {name}: ours"
         rows += [
             at_most(f"{label}, frames outside limits or not finite", ours.violations(), "", 0),
@@ -131,7 +133,7 @@ def kimore_rows() -> list[Row]:
             informative(f"{label}, knee jitter", ours.jitter(), "deg/frame^2"),
             informative(f"{label}, started standing", float(start.standing), ""),
         ]
-        plain = follow(seen, WholeBodyEkf(start._replace(bias_std=None), OURS))
+        plain = follow(seen, WholeBodyEkf(start._replace(bias_std=None), settings))
         rows.append(at_most(f"{label}, leg lengths after 5 s, no bias states", plain.length_variation(), "% CV", 1.0))
     return rows
 
@@ -152,7 +154,7 @@ def keraal_rows() -> list[Row]:
     recording = keraal("RTK")
     direct = trunk_lean(recording.seen.centres)[:, 1]
     start = first_start(recording.seen)
-    ekf = WholeBodyEkf(start, OURS)
+    ekf = WholeBodyEkf(start, settings_for(standing=start.standing))
     filtered = np.zeros(len(direct))
     for k, (centres, state) in enumerate(zip(*recording.seen, strict=True)):
         ekf.advance(1.0 / RATE_HZ if k else 0.0, centres, state)

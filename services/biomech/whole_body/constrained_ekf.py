@@ -54,13 +54,19 @@ class FilterSettings:
     """rad. What is carried on may exceed the limits of angles by this much; what is told never does. An offset of the
     camera holds a straight knee beyond its limit for long: to clip it at every frame would read that into the biases
     and the other angles. Lengths have no margin. [K]"""
+    lengths_learnt_s: float = 5.0
+    """s in view after which lengths are held. What still moves them then is the camera's systematic error, which more
+    frames do not average out."""
 
+
+HELD = 1e-3
+"""What is left of the deviation of a length that is held."""
 
 OURS = FilterSettings()
 
 
 class WholeBodyEkf:
-    """The filter of one person in view. `x` and `P` are its whole state.
+    """The filter of one person in view. `x`, `P` and `in_view_s` are its whole state.
 
     `estimate` (n,) is x within the limits: what is told.
 
@@ -78,7 +84,7 @@ class WholeBodyEkf:
         self.x[:SEEN] = np.concatenate([start.q, start.lengths])
         self._start_covariance()
         camera = settings.camera
-        self._noise = Noise(*camera.per_centre(), camera.inferred, camera.gate)
+        self._noise = Noise(*camera.per_centre(), camera.inferred, camera.stretch, camera.gate)
         self._bounds = bounds_of(start, constrained=settings.constrained)
         self._wide = bounds_of(start, constrained=settings.constrained)
         for limit, outwards in ((self._wide.low, -1.0), (self._wide.high, 1.0)):
@@ -90,6 +96,7 @@ class WholeBodyEkf:
         self._density = settings.process.densities()
         self._tree, self._columns = model.tree, Columns(*model.columns)
         self._update = empty_update(self._padded.shape[1])
+        self.in_view_s = 0.0
         self.active = 0
         self.swapped = False
 
@@ -121,6 +128,16 @@ class WholeBodyEkf:
             self._tree, self._columns, self._noise, self._priors, self._wide, self._bounds, self._update,
             self.estimate,
         )  # fmt: skip
+
+        self._learn_lengths(dt_s if seen.any() else 0.0)
+
+    def _learn_lengths(self, dt_s: float) -> None:
+        before, self.in_view_s = self.in_view_s, self.in_view_s + dt_s
+        if before < self.settings.lengths_learnt_s <= self.in_view_s:
+            # D P D with D diagonal stays positive definite.
+            self.x[COORDINATES:SEEN] = self.estimate[COORDINATES:SEEN]
+            self.P[COORDINATES:SEEN] *= HELD
+            self.P[:, COORDINATES:SEEN] *= HELD
 
     @property
     def q(self) -> Array:

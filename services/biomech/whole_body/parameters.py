@@ -83,6 +83,9 @@ class CameraNoise:
     which white noise of the same size would not say. [K]"""
     inferred: float = 25.0
     """Factor on the variance of an inferred centre. [K]"""
+    stretch: float = 0.06
+    """m. A bone seen longer or shorter by this much doubles the variance of both its ends, more by the square;
+    0: never. [K]"""
     gate: float = 6.0
     """Squared innovation of a centre, in variances, from which its variance grows by the square. Leaving it out
     altogether is worse. [K]"""

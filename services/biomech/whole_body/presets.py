@@ -1,5 +1,7 @@
 """Named settings of the filter, and what stands behind each."""
 
+from dataclasses import replace
+
 import numpy as np
 
 from services.biomech.whole_body.constrained_ekf import OURS, FilterSettings
@@ -13,21 +15,32 @@ from services.biomech.whole_body.parameters import (
 PUBLISHED_VARIANCE = 0.0052
 """m^2, average measurement variance of the paper (section 3.4)."""
 
-PUBLISHED_CAMERA = CameraNoise(variance=PUBLISHED_VARIANCE, along=0.0, inferred=1.0, gate=0.0, swap_share=0.0)
+PUBLISHED_CAMERA = CameraNoise(
+    variance=PUBLISHED_VARIANCE, along=0.0, inferred=1.0, stretch=0.0, gate=0.0, swap_share=0.0
+)
 """One constant R, whatever the camera says of a centre."""
 
 FLAT_PROCESS = ProcessNoise.of_groups(np.full(11, 100.0))
 """The same white jerk for every coordinate: what can be said without any recording."""
 
-CORRECTED = FilterSettings(PUBLISHED_CAMERA, FLAT_PROCESS, NO_PRIORS, constrained=True, margin=0.0)
+CORRECTED = FilterSettings(
+    PUBLISHED_CAMERA, FLAT_PROCESS, NO_PRIORS, constrained=True, margin=0.0, lengths_learnt_s=np.inf
+)
 """The paper's filter with its constraint put right, and nothing else of ours."""
 
-UNCONSTRAINED = FilterSettings(PUBLISHED_CAMERA, FLAT_PROCESS, NO_PRIORS, constrained=False)
+UNCONSTRAINED = FilterSettings(PUBLISHED_CAMERA, FLAT_PROCESS, NO_PRIORS, constrained=False, lengths_learnt_s=np.inf)
 
-TASKS = {
-    "any": OURS,
-}
-"""Settings by what is done. `any` was chosen over four tasks at once and is what a session starts with."""
+UNCALIBRATED = replace(OURS, process=ProcessNoise.of_groups(0.1 * OURS.process.groups()))
+"""For a start that is not standing: neither lengths nor offsets are known, and a calmer filter jumps less.
+
+The tenth was chosen with a recorded squat in view that starts low; there is no reference for it.
+"""
+
+
+def settings_for(*, standing: bool) -> FilterSettings:
+    """What a session filters with. The same for every task: settings per task gained nothing worth a choice."""
+    return OURS if standing else UNCALIBRATED
+
 
 PAPER_BIAS = StartNoise(bias_std=(0.037, 0.067, 0.022))
 """Offsets as large as the paper's own camera had."""

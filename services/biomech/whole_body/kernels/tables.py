@@ -63,6 +63,7 @@ class Noise(NamedTuple):
     variance: Array  # (15,) m^2 per axis of a tracked centre
     along: Array  # (15,) more along the bone that leads to the centre, in squares of that bone
     inferred: float  # factor on both of an inferred centre
+    stretch: float  # m by which a seen bone may differ from the model's before its ends are doubted; 0: never
     gate: float  # squared innovation, in variances, from which a centre is believed less; 0: never
 
 
@@ -83,6 +84,7 @@ class Update(NamedTuple):
     used: Indices  # (15,) centres in use, the first `in_use[0]`
     in_use: Indices  # (1,) how many
     innovation: Array  # (15, 3) m
+    doubt: Array  # (15,) factor on the variance of a centre at the end of a bone of wrong length
     distance: Array  # (15,) squared innovation in variances, 3 expected; of a centre in use
     W: Array  # (60, M)
     turned: Array  # (40, 60) what of W is seen, transposed
@@ -111,7 +113,8 @@ def empty_update(width: int) -> Update:
     rows = 3 * CENTRES + PRIORS + 3
     return Update(
         empty_pose(), np.zeros((BIASES, KINEMATIC)), np.zeros((BIASES, KINEMATIC)),
-        np.zeros(CENTRES, dtype=np.int64), np.zeros(1, dtype=np.int64), np.zeros((CENTRES, 3)), np.zeros(CENTRES),
+        np.zeros(CENTRES, dtype=np.int64), np.zeros(1, dtype=np.int64), np.zeros((CENTRES, 3)),
+        np.zeros(CENTRES), np.zeros(CENTRES),
         np.zeros((rows, width)), np.zeros((KINEMATIC, rows)), np.zeros((rows, rows)),
         np.zeros(rows), np.zeros(rows), np.zeros(width), np.zeros(2),
     )  # fmt: skip

@@ -44,6 +44,26 @@ def linearise(x: Array, biased: bool, centres: Array, state: Indices, tree: Tree
 
 
 @compiled
+def doubt_bones(centres: Array, state: Indices, tree: Tree, stretch: float, update: Update) -> None:
+    """Factor 1 + (error / stretch)^2 for both ends of each bone that is seen longer or shorter than it is.
+
+    A length says so in every posture and without delay, where an innovation may also be a fast movement.
+    """
+    update.doubt[:] = 1.0
+    for m in range(centres.shape[0]):
+        b = tree.before[m]
+        if b < 0 or state[m] == 0 or state[b] == 0 or stretch <= 0.0:
+            continue
+        seen, known = 0.0, 0.0
+        for i in range(3):
+            seen += (centres[m, i] - centres[b, i]) ** 2
+            known += (update.pose.centre[m, i] - update.pose.centre[b, i]) ** 2
+        e = (np.sqrt(seen) - np.sqrt(known)) / stretch
+        update.doubt[m] += e * e
+        update.doubt[b] += e * e
+
+
+@compiled
 def project_rows(P: Array, biased: bool, columns: Columns, update: Update) -> None:
     """W = H P: of each row, one translation, the columns that move its centre, and its own bias."""
     W, M = update.W, P.shape[1]
@@ -92,7 +112,8 @@ def innovation_covariance(
                 line[r] += W[r, own]
     for a in range(update.in_use[0]):
         m = update.used[a]
-        believe(a, m, tree.before[m], noise.inferred if state[m] == 1 else 1.0, noise, update)
+        factor = update.doubt[m] * (noise.inferred if state[m] == 1 else 1.0)
+        believe(a, m, tree.before[m], factor, noise, update)
 
 
 @compiled
@@ -226,6 +247,7 @@ def fuse(
     share: of a nominal frame's time in this one, inverted: priors tell the same per second at every rate.
     """
     linearise(x, biased, centres, state, tree, update)
+    doubt_bones(centres, state, tree, noise.stretch, update)
     project_rows(P, biased, columns, update)
     innovation_covariance(biased, state, tree, columns, noise, update)
     rows = append_priors(x, P, priors, share, update)

@@ -17,7 +17,7 @@ from services.biomech.whole_body.parameters import (
 )
 
 PLAIN = FilterSettings(
-    camera=CameraNoise(variance=1e-3, along=0.0, inferred=1.0, gate=0.0, swap_share=0.0),
+    camera=CameraNoise(variance=1e-3, along=0.0, inferred=1.0, stretch=0.0, gate=0.0, swap_share=0.0),
     priors=NO_PRIORS,
     constrained=False,
 )
@@ -129,13 +129,34 @@ def test_a_jump_is_believed_less(person) -> None:
     frames[30, CENTRE_NAMES.index("knee_right"), 0] += 0.4
     moved = []
     for gate in (9.0, 0.0):
-        ekf = WholeBodyEkf(person.start(), FilterSettings(camera=CameraNoise(gate=gate)))
+        ekf = WholeBodyEkf(person.start(), FilterSettings(camera=CameraNoise(gate=gate, stretch=0.0)))
         list(run(ekf, person, frames[:30]))
         before = ekf.x[KNEE]
         ekf.advance(person.dt, frames[30], person.tracked)
         moved.append(abs(np.degrees(ekf.x[KNEE] - before)))
     assert ekf.distances()[CENTRE_NAMES.index("knee_right")] > 20.0
     assert moved[0] < 0.2 * moved[1]
+
+
+def test_a_bone_of_wrong_length_is_believed_less(person) -> None:
+    """A wrist seen 15 cm beyond the forearm's end."""
+    frame = person.centres(person.standing())
+    wrist = CENTRE_NAMES.index("wrist_right")
+    frame[wrist] += 0.6 * (frame[wrist] - frame[CENTRE_NAMES.index("elbow_right")])
+    longer = []
+    for stretch in (0.06, 0.0):
+        ekf = WholeBodyEkf(person.start(), replace(PLAIN, camera=replace(PLAIN.camera, stretch=stretch)))
+        ekf.advance(0.0, frame, person.tracked)
+        longer.append(ekf.lengths[10] - person.lengths[10])
+    assert 0.0 < longer[0] < 0.5 * longer[1]
+
+
+def test_lengths_are_held_after_five_seconds(person) -> None:
+    lengths = [
+        ekf.lengths.copy() for ekf in run(WholeBodyEkf(person.start()), person, person.seen(person.squats(240), 0.02))
+    ]
+    assert np.abs(np.diff(lengths[:100], axis=0)).max() > 1e-5
+    assert np.ptp(lengths[160:], axis=0).max() < 1e-5
 
 
 def test_exchanged_legs_are_exchanged_back(person) -> None:
