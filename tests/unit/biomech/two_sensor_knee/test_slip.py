@@ -89,6 +89,20 @@ def test_no_slip_is_seen_where_there_is_none(motion, soft_tissue):
     assert estimator.slips == 0
 
 
+@pytest.mark.parametrize("gap_s", [1.0, 4.0])
+def test_levelling_anew_after_a_gap_is_no_slip(gap_s):
+    draw = np.random.default_rng(2)
+    worn = Sensors(Rotation.random(2, rng=2).as_matrix(), np.radians(draw.uniform(-0.5, 0.5, (2, 3))), 0.003, 0.1, 0.03)
+    leg = record(walking(), 50.0, RATE_HZ, worn, seed=2)
+    estimator = KneeAxis(KneeAxisParameters(sample_delay_s=0.0))
+    estimator.run(leg.rate[:3000], leg.force[:3000], 1.0 / RATE_HZ)
+    back = 3000 + int(gap_s * RATE_HZ)
+    estimator.step(leg.rate[back], leg.force[back], gap_s)
+    out = estimator.run(leg.rate[back + 1 :], leg.force[back + 1 :], 1.0 / RATE_HZ)
+    assert estimator.slips == 0
+    assert np.degrees(np.std(out[-700:, FLEXION] - leg.flexion[-700:])) < 2.0
+
+
 def test_a_slow_slide_round_the_leg_is_followed():
     leg = slipped(record(walking(), 60.0, RATE_HZ, WORN, seed=5), SHANK, ROUND_THE_LEG, 30.0, lasting_s=35.0)
     out, _, _ = run(leg)
