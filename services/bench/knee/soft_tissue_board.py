@@ -56,6 +56,8 @@ def explain(trials: Sequence[Trial]) -> Section:
         name = f"soft tissue, {method}"
         rows += [
             informative(f"{name}: flexion, zero-mean, mean of trials", float(error.mean()), "deg"),
+            informative(f"{name}: flexion, zero-mean, median of trials", float(np.median(error)), "deg"),
+            informative(f"{name}: flexion, zero-mean, worst trial", float(error.max()), "deg"),
             informative(f"{name}: axis error of the shank, mean of trials", float(axis[:, 1].mean()), "deg"),
             informative(f"{name}: axis error of the shank, worst trial", float(axis[:, 1].max()), "deg", detail=True),
             informative(f"{name}: adjusted R2 of the paper's model", model.adjusted_r_squared, ""),
