@@ -2,8 +2,8 @@
 
 from collections.abc import Iterable, Set
 
-from schemas.session import HubDescription
-from schemas.vocabulary import EventSource, Segment, Side
+from schemas.session import HubDescription, SessionDescription
+from schemas.vocabulary import KNEE_ESTIMATORS, EventSource, Segment, Side
 
 
 def worn_segments(hubs: Iterable[HubDescription]) -> frozenset[Segment]:
@@ -14,6 +14,14 @@ def worn_segments(hubs: Iterable[HubDescription]) -> frozenset[Segment]:
 def whole_legs(worn: Set[Segment]) -> tuple[Side, ...]:
     """Legs with a sensor on both thigh and shank: those that can be knees of their own."""
     return tuple(side for side in Side if {Segment(f"thigh_{side}"), Segment(f"shank_{side}")} <= worn)
+
+
+def used_segments(description: SessionDescription) -> frozenset[Segment]:
+    """Segments whose sensors a session uses: all or, with an estimator of single knees, those of whole legs."""
+    worn = worn_segments(description.hubs)
+    if description.estimator not in KNEE_ESTIMATORS:
+        return worn
+    return frozenset(Segment(f"{part}_{side}") for side in whole_legs(worn) for part in ("thigh", "shank"))
 
 
 def event_source(worn: Set[Segment], side: Side) -> EventSource:

@@ -8,7 +8,7 @@ from schemas.rhythm import Rhythm
 from schemas.session import SessionDescription
 from schemas.signals import GAIT_EVENT, REPETITION, STRIDE, TASK_PHASE, Signal
 from schemas.vocabulary import Task
-from services.biomech.event_sources import lone_segments, worn_segments
+from services.biomech.event_sources import lone_segments, used_segments
 from services.flow.message import Message, Output, Stream
 from services.flow.node import Node, State
 from services.segmentation.batch import Batch
@@ -43,9 +43,10 @@ class Segmenter(Protocol):
 
 def segmenters(description: SessionDescription, parameters: SegmentationParameters) -> dict[str, Segmenter]:
     """Those that the task of a session needs, by name."""
-    found: dict[str, Segmenter] = {"gait": GaitSegmenter(description, parameters)}
     if description.task is Task.KNEE_FLEXION:
-        found["repetitions"] = RepetitionSegmenter()
+        # No gait beside it: a shank that is stretched out and drawn back looks like a swing.
+        return {"repetitions": RepetitionSegmenter()}
+    found: dict[str, Segmenter] = {"gait": GaitSegmenter(description, parameters)}
     if description.task is Task.TIMED_UP_AND_GO:
         found["timed_up_and_go"] = TimedUpAndGoSegmenter(description)
     return found
@@ -57,7 +58,7 @@ class SegmentationNode:
     outputs: tuple[Signal, ...] = (GAIT_EVENT, STRIDE, TASK_PHASE, REPETITION)
 
     def __init__(self, description: SessionDescription, parameters: SegmentationParameters = DEFAULTS) -> None:
-        with_motion = bool(lone_segments(worn_segments(description.hubs)))
+        with_motion = bool(lone_segments(used_segments(description)))
         self.streams: tuple[Stream, ...] = (JOINTS_FROM, RHYTHM_FROM, MOTION_FROM)[: 3 if with_motion else 2]
         self._intake = Intake()
         self._pairing = Pairing(with_motion=with_motion)

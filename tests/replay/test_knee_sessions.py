@@ -104,6 +104,15 @@ def test_hinge(trial, most_deg):
     assert never_misplaced(spec)
 
 
+def test_other_sensors_beside_a_leg_keep_nobody_waiting():
+    """Pelvis and feet are worn, and not used: events come from the knees' own shanks."""
+    payloads = played("synthetic:walk?duration=20&seed=5&feet=1")
+    strides = [each for each in payloads if isinstance(each, Stride) and each.valid]
+    assert {stride.side for stride in strides} == set(Side)
+    (calibration,) = [each for each in payloads if isinstance(each, Calibration)]
+    assert set(calibration.unused) == {"pelvis", "foot_left", "foot_right"}
+
+
 def test_a_synthetic_walk_of_one_leg_gives_strides_with_knee_curves_and_metrics():
     payloads = played("synthetic:walk?worn=1&duration=30&seed=5")
     strides = [each for each in payloads if isinstance(each, Stride) and each.valid]

@@ -5,7 +5,7 @@ from schemas.session import SessionDescription
 from schemas.signals import TASK_PHASE
 from schemas.tasks import TaskPhase
 from schemas.vocabulary import Segment
-from services.biomech.event_sources import lone_segments, worn_segments
+from services.biomech.event_sources import lone_segments, used_segments
 from services.flow.message import Output
 from services.flow.node import State
 from services.segmentation.batch import Batch
@@ -25,7 +25,7 @@ class TimedUpAndGoSegmenter:
 
     def __init__(self, description: SessionDescription, parameters: TimedUpAndGoParameters = DEFAULTS) -> None:
         p = self._parameters = parameters
-        worn = worn_segments(description.hubs)
+        worn = used_segments(description)
         by_pelvis = not worn & _THIGHS and Segment.PELVIS in lone_segments(worn)
         self._pelvis = VerticalSpeed(p) if by_pelvis else None
         self._lone = LoneMotion()

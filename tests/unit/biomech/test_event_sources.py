@@ -1,7 +1,8 @@
 import pytest
 
 from schemas.vocabulary import EventSource, Segment, Side
-from services.biomech.event_sources import event_source, event_sources, lone_segments
+from services.biomech.event_sources import event_source, event_sources, lone_segments, used_segments, whole_legs
+from services.ingest.source import open_source
 
 LEFT_LEG = {Segment.THIGH_LEFT, Segment.SHANK_LEFT}
 FEET = {Segment.FOOT_LEFT, Segment.FOOT_RIGHT}
@@ -22,6 +23,15 @@ FEET = {Segment.FOOT_LEFT, Segment.FOOT_RIGHT}
 )
 def test_the_best_that_is_worn_tells_a_leg(worn, source):
     assert event_source(worn, Side.LEFT) is source
+
+
+def test_an_estimator_of_knees_uses_whole_legs_alone():
+    assert whole_legs({*LEFT_LEG, Segment.SHANK_RIGHT}) == (Side.LEFT,)
+    everyone = "synthetic:walk?duration=5&feet=1"
+    assert len(used_segments(open_source(everyone, estimator="ekf").describe())) == 7
+    used = used_segments(open_source(everyone, estimator="knee_axis").describe())
+    assert event_sources(used) == dict.fromkeys(Side, EventSource.SHANK)
+    assert not lone_segments(used)
 
 
 def test_each_leg_has_its_own_source():
