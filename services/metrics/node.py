@@ -105,7 +105,7 @@ class MetricsNode:
             metrics=[
                 *self._repetitions.metrics(),
                 *([] if attempts is None else attempts.metrics(final=final)),
-                *self._totals.metrics(self._parameters),
+                *([] if self._is_exercise else self._totals.metrics(self._parameters)),
                 *rhythm_metrics(self._learned if final else None, self._known, final=final),
             ],
             curves=self._totals.curves(self._parameters),

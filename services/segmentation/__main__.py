@@ -4,6 +4,8 @@ import sys
 
 from services.bus.runner import run_node_service
 from services.segmentation.node import build
+from services.segmentation.warm_up import warm_up
 
 if __name__ == "__main__":
+    warm_up()
     sys.exit(run_node_service("segmentation", build))
