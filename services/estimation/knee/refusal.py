@@ -3,7 +3,7 @@
 from schemas.health import Rejection
 from schemas.kinematics import LivePose
 from schemas.session import SessionDescription
-from schemas.signals import IMU, LIVE_POSE, Signal
+from schemas.signals import IMU, LIVE_POSE, SIGNALS, Signal
 from services.estimation.lower_body.live_pose import unused_statuses, waiting_pose
 from services.estimation.parameters import EstimationParameters
 from services.flow.message import Message, Output, Stream
@@ -13,7 +13,8 @@ from services.flow.node import State
 class RefusingNode:
     """Says once in a while what must be changed."""
 
-    outputs: tuple[Signal, ...] = (LIVE_POSE,)
+    outputs: tuple[Signal, ...] = tuple(signal for signal in SIGNALS if signal.producer == "estimation")
+    """All, though it only shows pictures: readers wait for the end of each stream."""
 
     def __init__(self, description: SessionDescription, reason: str) -> None:
         self.reason = reason
