@@ -27,7 +27,7 @@ from services.biomech.whole_body.start import (
 Array = NDArray[np.float64]
 
 NOTE = (
-    "recorded: the calmer process noise of a start that is not standing was chosen with the KIMORE squat in view, "
+    "recorded: the calm settings of a start that is not standing were chosen with the KIMORE squat in view, "
     "nothing else. It has no reference: jumps, lengths and limits only; lengths are held after 5 s. "
     "KERAAL is seated: only the lean of the trunk is compared"
 )
