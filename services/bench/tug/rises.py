@@ -8,6 +8,7 @@ from numpy.typing import NDArray
 from schemas.imu import ReferenceBatch
 from schemas.kinematics import JointState
 from schemas.tasks import TaskPhase
+from schemas.vocabulary import TaskPhaseKind
 from services.bench.scoreboard import Row, at_least, at_most, informative
 from services.bench.tug.sessions import estimated
 from services.flow.message import Message
@@ -29,10 +30,14 @@ MOST_S = 0.25
 def rise_rows() -> list[Row]:
     """Rises and sits counted and timed; no attempt may be found."""
     messages = list(estimated(SPEC))
-    attempts = sum(isinstance(message.payload, TaskPhase) for message in messages)
+    told = [message.payload for message in messages if isinstance(message.payload, TaskPhase)]
+    completed = [phase for phase in told if phase.phase is TaskPhaseKind.TURN_TO_SIT and phase.end_std_s is not None]
     seen_from_s = min(joints.captured_ns[0] for joints in _joints(messages)) * 1e-9
     found = list(changes(messages))
-    rows = [at_most("sit to stand recording: attempts", attempts, "1", 0)]
+    rows = [
+        at_most("sit to stand recording: attempts completed", len(completed), "1", 0),
+        at_most("sit to stand recording: attempts begun", len({phase.attempt for phase in told}), "1", 0),
+    ]
     time_s, flexion = optical_flexion()
     for rises, name in ((True, "rises"), (False, "sits")):
         true_s = [at for at in middles_s(time_s, flexion, rises=rises) if at > seen_from_s + NEAR_S]
