@@ -2,6 +2,7 @@
 
 import time
 from dataclasses import dataclass
+from functools import cache
 from pathlib import Path
 
 import pytest
@@ -12,6 +13,7 @@ from schemas.metrics import SessionMetrics
 from schemas.rhythm import Rhythm
 from schemas.session import SessionDescription
 from schemas.signals import IMU, SIGNALS
+from schemas.vocabulary import LOWER_BODY
 from services.archive.reader import open_recording
 from services.bus.connection import Bus
 from services.bus.settings import BusSettings
@@ -19,12 +21,13 @@ from services.cli import live
 from services.cli.assembly import build_chain
 from services.cli.supervisor import Supervisor
 from services.flow.message import Message, encode_payload
-from services.ingest.choices import Choices
 from services.ingest.source import iter_messages, open_source
 
 pytestmark = pytest.mark.system
 
 WALK = "synthetic:walk?speed=1.2&seed=11&duration=24"
+KNEE = "synthetic:walk?speed=1.2&seed=12&duration=24&worn=1"
+TIMED_UP_AND_GO = "synthetic:tug?seed=4&stroll=4"
 SERVICES = ["archive", "estimation", "segmentation", "metrics", "ingest"]
 
 
@@ -34,18 +37,19 @@ class Stack:
     settings: BusSettings
     data: Path
 
-    def play(self, spec: str, speed: float | None, disturb=None) -> SessionDescription:
-        """Play a source to its final metrics; `disturb(supervisor)` runs once a third of it is done."""
+    def play(self, spec: str, speed: float | None, victim: str | None = None) -> SessionDescription:
+        """Play a source to its final metrics; the victim is killed once a third of it is done."""
         with Bus.open(self.settings, "test") as bus, live.Watch(bus) as watch:
-            description = live.start_session(bus, spec, speed, Choices("rhythmic_ekf"))
+            description = live.start_session(bus, spec, speed)
             deadline = time.monotonic() + 90
             for news in watch.follow(description):
                 assert time.monotonic() < deadline
                 if isinstance(news, SessionMetrics):
+                    assert victim is None, f"{victim} was never killed"
                     return description
-                if disturb is not None and news > description.duration_s / 3:
-                    disturb(self.supervisor)
-                    disturb = None
+                if victim is not None and news > description.duration_s / 3:
+                    self.supervisor.kill(victim)
+                    victim = None
         raise AssertionError("the session never ended")
 
     def archived(self, session: str) -> dict[str, list[Message]]:
@@ -89,8 +93,9 @@ def rows(messages: list[Message]) -> list[tuple]:
     return sorted(said) if message.stream.signal is IMU else said
 
 
+@cache
 def plain_loop(spec: str) -> dict[str, list[Message]]:
-    source = open_source(spec, estimator="rhythmic_ekf")
+    source = open_source(spec)
     chain = build_chain(source.describe())
     streams: dict[str, list[Message]] = {}
     for message in iter_messages(source):
@@ -110,31 +115,55 @@ def same_as_plain_loop(stack: Stack, description: SessionDescription, spec: str)
         assert rows(archived[name]) == rows(messages), name
 
 
-def test_live_services_give_the_numbers_of_a_plain_loop(stack):
-    same_as_plain_loop(stack, stack.play(WALK, None), WALK)
+@pytest.fixture(scope="module")
+def walked(stack) -> SessionDescription:
+    """A walk, as fast as the services follow."""
+    return stack.play(WALK, None)
 
 
-@pytest.mark.parametrize("victim", ["estimation", "segmentation", "metrics", "archive"])
-def test_nothing_is_lost_when_a_service_is_killed(stack, victim):
-    description = stack.play(WALK, 3.0, disturb=lambda supervisor: supervisor.kill(victim))
-    same_as_plain_loop(stack, description, WALK)
+def test_live_services_give_the_numbers_of_a_plain_loop(stack, walked):
+    same_as_plain_loop(stack, walked, WALK)
+
+
+KILLED = [
+    *((KNEE, victim) for victim in ("estimation", "segmentation", "metrics", "archive")),
+    *((WALK, victim) for victim in ("estimation", "archive")),
+    *((TIMED_UP_AND_GO, victim) for victim in ("segmentation", "metrics")),
+]
+
+
+@pytest.mark.parametrize(("spec", "victim"), KILLED)
+def test_nothing_is_lost_when_a_service_is_killed(stack, spec, victim):
+    """Two sensors of one leg, five of a walker, and a task with phases, each where it differs."""
+    same_as_plain_loop(stack, stack.play(spec, 4.0, victim), spec)
+
+
+def test_a_knee_session_gives_its_angle_and_strides_and_a_timed_up_and_go_its_phases():
+    """What the sessions above are about is there to be lost."""
+    knee, timed = plain_loop(KNEE), plain_loop(TIMED_UP_AND_GO)
+    flexion = [dof.name for dof in LOWER_BODY].index("knee_flexion_left")
+    states = [m.payload for m in knee["joint_state/estimation"] if m.payload]
+    assert sum(state.valid[flexion] for state in states) > 0.5 * len(states)
+    assert len(knee["stride/segmentation"]) > 10
+    assert len({m.payload.phase for m in timed["task_phase/segmentation"] if m.payload}) >= 5
+    for streams in (knee, timed):
+        assert [m.payload.final for m in streams["metrics/metrics"] if m.payload][-1]
 
 
 def test_two_patients_at_once_equal_each_alone(stack):
     other = "synthetic:walk?speed=0.8&seed=12&duration=24"
     with Bus.open(stack.settings, "test") as bus, live.Watch(bus) as watch:
-        descriptions = [live.start_session(bus, spec, 4.0, Choices("rhythmic_ekf")) for spec in (WALK, other)]
+        descriptions = [live.start_session(bus, spec, 4.0) for spec in (WALK, other)]
         for description in descriptions:
             assert any(isinstance(news, SessionMetrics) for news in watch.follow(description))
     same_as_plain_loop(stack, descriptions[0], WALK)
     same_as_plain_loop(stack, descriptions[1], other)
 
 
-def test_an_archive_gives_its_own_results_again(stack):
+def test_an_archive_gives_its_own_results_again(stack, walked):
     """Recomputed from the raw file: every derived message, to the byte, under the same numbers."""
-    description = stack.play(WALK, 6.0)
-    archived = stack.archived(description.session)
-    source = open_source(str(stack.data / description.session))
+    archived = stack.archived(walked.session)
+    source = open_source(str(stack.data / walked.session))
     chain = build_chain(source.describe())
     again: dict[str, list[Message]] = {}
     for message in iter_messages(source):
