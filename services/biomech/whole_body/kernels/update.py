@@ -187,9 +187,14 @@ def whiten(rows: int, update: Update) -> None:
         for k in range(r):
             left -= S[k, r] * y[k]
         y[r] = left * inverse
-        subtract_earlier(r, S, W)
+        for s in range(r - r % 6, r):
+            f, target, w = S[s, r], W[r], W[s]
+            for k in range(M):
+                target[k] -= f * w[k]
         for k in range(M):
             W[r, k] *= inverse
+        if r % 6 == 5:
+            subtract_six(r - 5, rows, S, W)
     for r in range(rows, rows + (-rows) % 6):
         y[r] = 0.0
         for k in range(M):
@@ -197,18 +202,15 @@ def whiten(rows: int, update: Update) -> None:
 
 
 @compiled
-def subtract_earlier(r: int, S: Array, W: Array) -> None:
-    """W[r] -= sum of S[s, r] W[s] over s < r, six at a time."""
-    target, whole = W[r], r - r % 6
-    for s in range(0, whole, 6):
-        a, b, c, d, e, f = S[s, r], S[s + 1, r], S[s + 2, r], S[s + 3, r], S[s + 4, r], S[s + 5, r]
-        t, u, v, w, x, z = W[s], W[s + 1], W[s + 2], W[s + 3], W[s + 4], W[s + 5]
+def subtract_six(first: int, rows: int, S: Array, W: Array) -> None:
+    """Take six finished rows of W out of all later ones, while they are in the first cache."""
+    t, u, v, w, x, z = W[first], W[first + 1], W[first + 2], W[first + 3], W[first + 4], W[first + 5]
+    for r in range(first + 6, rows):
+        a, b, c = S[first, r], S[first + 1, r], S[first + 2, r]
+        d, e, f = S[first + 3, r], S[first + 4, r], S[first + 5, r]
+        target = W[r]
         for k in range(target.size):
             target[k] -= a * t[k] + b * u[k] + c * v[k] + d * w[k] + e * x[k] + f * z[k]
-    for s in range(whole, r):
-        a, w = S[s, r], W[s]
-        for k in range(target.size):
-            target[k] -= a * w[k]
 
 
 @compiled
