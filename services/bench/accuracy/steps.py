@@ -14,7 +14,7 @@ from services.bench.accuracy.offline_steps import NOISE, both_ways, quietest
 from services.bench.scoreboard import Row, Scoreboard, at_most, informative
 from services.biomech.lower_body_ekf import NoiseModel
 from services.biomech.rotations import frame_from_up_and_right
-from services.estimation.lower_body.alignment import Alignment
+from services.estimation.alignment import Alignment
 from services.estimation.lower_body.lower_body_filter import Calibrated
 
 Array = NDArray[np.float64]

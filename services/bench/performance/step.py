@@ -23,8 +23,8 @@ from services.biomech.lower_body import SEGMENTS, LowerBodyModel, SensorMount
 from services.biomech.lower_body_ekf import LowerBodyEkf, MeasurementModel, NoiseModel
 from services.biomech.pinocchio_model import PinocchioBody
 from services.biomech.textbook_ekf import TextbookEkf
-from services.estimation.lower_body.lower_body_filter import RHYTHM_CHANNELS
 from services.estimation.parameters import FilterParameters
+from services.estimation.rows import RHYTHM_CHANNELS
 
 Array = NDArray[np.float64]
 

@@ -17,9 +17,9 @@ from services.biomech.rhythm.comparison import Comparison, Leg, compare_legs
 from services.biomech.rhythm.learned import Learned, LearnedStrides
 from services.biomech.rhythm.reading import RhythmReading
 from services.biomech.rhythm.trusted import TrustedRhythm
-from services.estimation.lower_body.learning import described
-from services.estimation.lower_body.lower_body_filter import RHYTHM_CHANNELS
+from services.estimation.learning import described
 from services.estimation.node import build
+from services.estimation.rows import RHYTHM_CHANNELS
 from services.flow.chain import Chain
 from services.flow.host import HostedNode
 from services.ingest.source import iter_messages, open_source

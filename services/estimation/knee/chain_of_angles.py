@@ -12,8 +12,8 @@ import numpy as np
 from schemas.vocabulary import LOWER_BODY, Side
 from services.biomech.rhythm.trusted import TrustedRhythm
 from services.estimation.knee.leg import LegState
-from services.estimation.lower_body.lower_body_filter import RHYTHM_CHANNELS, Row
 from services.estimation.parameters import KneeParameters
+from services.estimation.rows import RHYTHM_CHANNELS, Row
 from services.flow.node import State
 
 INDEX = {dof.name: i for i, dof in enumerate(LOWER_BODY)}

@@ -9,9 +9,9 @@ from schemas.kinematics import Calibration, SensorAlignment
 from schemas.session import SessionDescription
 from services.biomech.event_sources import event_sources
 from services.biomech.rotations import quaternion_from_matrix
+from services.estimation.alignment import Alignment
 from services.estimation.knee.leg import Leg
-from services.estimation.lower_body.alignment import Alignment
-from services.estimation.lower_body.calibration_message import MODEL
+from services.estimation.rows import MODEL
 from services.flow.node import State, pack_array, unpack_array
 
 Array = NDArray[np.float64]

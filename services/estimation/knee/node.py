@@ -11,6 +11,7 @@ from schemas.session import SessionDescription
 from schemas.signals import CALIBRATION, JOINT_STATE, LEARNED_RHYTHM, LIVE_POSE, RHYTHM, SEGMENT_MOTION, Signal
 from schemas.vocabulary import Segment
 from services.biomech.rhythm.trusted import TrustedRhythm
+from services.estimation.estimates import estimates
 from services.estimation.intake import Intake
 from services.estimation.knee.chain_of_angles import ChainOfAngles
 from services.estimation.knee.estimators import estimator_of
@@ -19,11 +20,10 @@ from services.estimation.knee.instants import CommonInstants, Instant
 from services.estimation.knee.leg import Leg, LegState
 from services.estimation.knee.screen import Screen
 from services.estimation.knee.worn_legs import used_by_knees, worn_legs
-from services.estimation.lower_body.estimates import estimates
-from services.estimation.lower_body.learning import RhythmLearning, start_rhythm
-from services.estimation.lower_body.lower_body_filter import RHYTHM_CHANNELS, Row
-from services.estimation.lower_body.marked_standing import Marks
+from services.estimation.learning import RhythmLearning, start_rhythm
+from services.estimation.marked_standing import Marks
 from services.estimation.parameters import EstimationParameters
+from services.estimation.rows import RHYTHM_CHANNELS, Row
 from services.estimation.samples import Tick, TickBatch
 from services.estimation.standing import StandingDetector, StandingReference
 from services.flow.message import Message, Output, Stream
@@ -259,7 +259,7 @@ class _Run:
         self.last, self.valid, self._observed = row, valid, observed
 
     def _close(self) -> None:
-        self.outputs += estimates(self._rows, self.valid, self._observed, None)
+        self.outputs += estimates(self._rows, self.valid, self._observed)
         self._rows = []
 
     def finish(self) -> list[Output]:

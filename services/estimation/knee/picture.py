@@ -11,7 +11,7 @@ from services.biomech.forward_kinematics import ankle_position, segment_poses
 from services.biomech.lower_body import LowerBodyModel
 from services.biomech.rotations import quaternion_from_matrix
 from services.estimation.knee.worn_legs import WornLeg
-from services.estimation.lower_body.lower_body_filter import Row
+from services.estimation.rows import Row
 
 
 def leg_pictures(

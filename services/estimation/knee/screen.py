@@ -13,8 +13,8 @@ from services.estimation.intake import Intake
 from services.estimation.knee.leg import Leg
 from services.estimation.knee.picture import knee_pose, leg_pictures
 from services.estimation.knee.wording import WRONG_UNITS, misplacement_words, wishes
-from services.estimation.lower_body.live_pose import sensor_statuses, sensor_troubles, unused_statuses, waiting_pose
-from services.estimation.lower_body.lower_body_filter import Row
+from services.estimation.rows import Row
+from services.estimation.sensor_status import sensor_statuses, sensor_troubles, unused_statuses, waiting_pose
 from services.estimation.standing import StandingReference
 
 Array = NDArray[np.float64]

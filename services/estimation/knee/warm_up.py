@@ -8,8 +8,8 @@ from services.biomech.lower_body import LowerBodyModel
 from services.biomech.rhythm.trusted import TrustedRhythm
 from services.biomech.two_sensor_knee.flexion import angle_of_verticals
 from services.biomech.two_sensor_knee.knee_axis import KneeAxis
-from services.estimation.lower_body.lower_body_filter import RHYTHM_CHANNELS
 from services.estimation.parameters import EstimationParameters
+from services.estimation.rows import RHYTHM_CHANNELS
 
 
 def warm_up() -> None:

@@ -6,8 +6,8 @@ from services.biomech.event_sources import event_sources, worn_segments
 from services.biomech.rotations import quaternion_from_matrix
 from services.estimation.intake import Intake
 from services.estimation.lower_body.lower_body_filter import Calibrated
+from services.estimation.rows import MODEL
 
-MODEL = "lower_body"
 UPRIGHT = "quiet standing: pelvis level, thighs and shanks vertical, feet flat"
 POPULATION = (
     "population: mean posture of healthy adults' walking; nobody stood still, so angles are right as changes, "

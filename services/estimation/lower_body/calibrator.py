@@ -9,7 +9,8 @@ from schemas.health import Reason
 from schemas.session import SensorDescription, SessionDescription
 from schemas.vocabulary import LOWER_BODY_ESTIMATORS
 from services.biomech.rotations import angle_between
-from services.estimation.lower_body.alignment import Alignment, AxisSearch, FlexionAxis
+from services.estimation.alignment import Alignment
+from services.estimation.lower_body.axis_search import AxisSearch, FlexionAxis
 from services.estimation.lower_body.lower_body_filter import Calibrated
 from services.estimation.lower_body.sitting import rose_from_sitting
 from services.estimation.lower_body.walking_reference import lean, refer_to_walking

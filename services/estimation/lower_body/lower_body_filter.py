@@ -1,7 +1,6 @@
 """The filter of one session beside its rhythm: ticks in, one row of joint coordinates and rhythm out."""
 
 from dataclasses import dataclass
-from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -12,32 +11,18 @@ from services.biomech.lower_body import SEGMENTS, LowerBodyModel, SensorMount
 from services.biomech.lower_body_ekf import LowerBodyEkf
 from services.biomech.rhythm.reading import RhythmReading
 from services.biomech.rhythm.trusted import TrustedRhythm
-from services.estimation.lower_body.alignment import Alignment
+from services.estimation.alignment import Alignment
 from services.estimation.lower_body.coasting import Coasting
 from services.estimation.lower_body.drivers import companions_of, driver_of
 from services.estimation.lower_body.gap_filling import GapFilling, Step
 from services.estimation.lower_body.resting_joints import rest_variances, valid_without
 from services.estimation.lower_body.unmodelled import unmodelled_deviations
 from services.estimation.parameters import FilterParameters
+from services.estimation.rows import RHYTHM_CHANNELS, Row
 from services.estimation.samples import Tick
 from services.flow.node import State, pack_array, unpack_array
 
 Array = NDArray[np.float64]
-
-RHYTHM_CHANNELS = ("knee_flexion_right", "knee_flexion_left", "hip_flexion_right", "hip_flexion_left")
-"""Joints whose velocity the rhythm listens to. They share the stride; the pelvis has the step in it."""
-
-
-class Row(NamedTuple):
-    """Estimates at one instant, in the order of LOWER_BODY, and the rhythm."""
-
-    captured_ns: int
-    position: list[float]  # (15,) rad
-    velocity: list[float]  # (15,) rad/s
-    acceleration: list[float]  # (15,) rad/s^2
-    position_std: list[float]  # (15,) rad
-    velocity_std: list[float]  # (15,) rad/s
-    rhythm: RhythmReading
 
 
 @dataclass

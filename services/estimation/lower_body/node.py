@@ -14,18 +14,20 @@ from schemas.session import SessionDescription
 from schemas.signals import CALIBRATION, JOINT_STATE, LEARNED_RHYTHM, LIVE_POSE, RHYTHM, SEGMENT_MOTION, Signal
 from schemas.vocabulary import LOWER_BODY, Segment
 from services.biomech.event_sources import lone_segments, worn_segments
+from services.estimation.estimates import estimates
 from services.estimation.intake import Intake, used_by_lower_body
+from services.estimation.learning import RhythmLearning, start_rhythm
 from services.estimation.lower_body.calibration_message import calibration_message
 from services.estimation.lower_body.calibrator import Calibrator, pack_calibrated, unpack_calibrated
-from services.estimation.lower_body.estimates import estimates
-from services.estimation.lower_body.learning import RhythmLearning, start_rhythm
-from services.estimation.lower_body.live_pose import estimated_pose, sensor_statuses, unused_statuses, waiting_pose
-from services.estimation.lower_body.lower_body_filter import Calibrated, LowerBodyFilter, Row
-from services.estimation.lower_body.marked_standing import Marks
+from services.estimation.lower_body.live_pose import estimated_pose
+from services.estimation.lower_body.lower_body_filter import Calibrated, LowerBodyFilter
 from services.estimation.lower_body.resting_bias import RestingBias
 from services.estimation.lower_body.segment_motion import LoneSegments
+from services.estimation.marked_standing import Marks
 from services.estimation.parameters import EstimationParameters
+from services.estimation.rows import Row
 from services.estimation.samples import Tick, TickBatch
+from services.estimation.sensor_status import sensor_statuses, unused_statuses, waiting_pose
 from services.estimation.standing import StandingReference
 from services.flow.message import Message, Output, Stream
 from services.flow.node import State
@@ -187,7 +189,7 @@ class LowerBodyNode:
                 self._believe(running, self._bias.bias)
             row = running.fuse(tick.first(self._intake.body_sensors))
             if rows and (running.valid != valid or running.observed != observed):
-                outputs += estimates(rows, valid, observed, self._lone)
+                outputs += self._estimates(rows, valid, observed)
                 rows = []
             rows.append(row)
             valid, observed = running.valid, running.observed
@@ -196,8 +198,16 @@ class LowerBodyNode:
                 self._lone.take(tick, row.position[TILT], row.position[OBLIQUITY])
         if not rows:
             return []
-        outputs += estimates(rows, valid, observed, self._lone) + learned
+        outputs += self._estimates(rows, valid, observed) + learned
         return outputs + self._picture(running, rows[-1])
+
+    def _estimates(self, rows: list[Row], valid: list[bool], observed: list[Segment]) -> list[Output]:
+        """The messages of some rows; where lone segments are followed, their motion beside them."""
+        outputs, newest_ns = estimates(rows, valid, observed), rows[-1].captured_ns
+        if self._lone is not None:
+            motion = self._lone.collect([row.captured_ns for row in rows])
+            outputs.append(Output(SEGMENT_MOTION, newest_ns, motion))
+        return outputs
 
     def _believe(self, running: LowerBodyFilter, gyro_bias: NDArray[np.float64]) -> None:
         running.ekf.bias[:] = gyro_bias[: self._intake.body_sensors]

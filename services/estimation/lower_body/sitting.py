@@ -12,7 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from schemas.session import SensorDescription
-from services.estimation.lower_body.alignment import FlexionAxis
+from services.estimation.lower_body.axis_search import FlexionAxis
 from services.estimation.parameters import StandingParameters
 from services.estimation.samples import FORCE, Tick
 from services.estimation.standing import THIGHS, StandingReference

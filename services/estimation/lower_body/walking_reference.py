@@ -16,7 +16,8 @@ from scipy.signal import find_peaks
 from schemas.session import SensorDescription
 from schemas.vocabulary import Segment
 from services.biomech.rotations import angle_between, normalised, rotation_about
-from services.estimation.lower_body.alignment import Alignment, low_pass
+from services.estimation.alignment import Alignment
+from services.estimation.lower_body.axis_search import low_pass
 from services.estimation.parameters import StandingParameters, WalkingParameters
 from services.estimation.samples import FORCE, RATE, Tick
 from services.estimation.standing import StandingReference

@@ -6,7 +6,7 @@ from schemas.session import Anthropometry, HubDescription, Placement, SensorDesc
 from schemas.vocabulary import LOWER_BODY_ESTIMATORS, Task
 from services.biomech.forward_kinematics import segment_poses
 from services.biomech.lower_body import SEGMENTS
-from services.estimation.lower_body.alignment import Alignment
+from services.estimation.alignment import Alignment
 from services.estimation.lower_body.lower_body_filter import Calibrated, LowerBodyFilter
 from services.estimation.parameters import EstimationParameters
 from services.estimation.samples import Tick

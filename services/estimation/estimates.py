@@ -1,23 +1,18 @@
-"""Rows of the filter as messages."""
+"""Rows as messages."""
 
 from schemas.kinematics import JointState
 from schemas.rhythm import Rhythm
-from schemas.signals import JOINT_STATE, RHYTHM, SEGMENT_MOTION
+from schemas.signals import JOINT_STATE, RHYTHM
 from schemas.vocabulary import Segment
-from services.estimation.lower_body.calibration_message import MODEL
-from services.estimation.lower_body.lower_body_filter import Row
-from services.estimation.lower_body.segment_motion import LoneSegments
+from services.estimation.rows import MODEL, Row
 from services.flow.message import Output
 
 
-def estimates(rows: list[Row], valid: list[bool], observed: list[Segment], lone: LoneSegments | None) -> list[Output]:
-    """Joint states, rhythm and, where lone segments are followed, their motion: one message each for some rows."""
+def estimates(rows: list[Row], valid: list[bool], observed: list[Segment]) -> list[Output]:
+    """Joint states and rhythm: one message each for some rows."""
     newest_ns = rows[-1].captured_ns
     joints = _joint_state(rows, valid, observed)
-    outputs = [Output(JOINT_STATE, newest_ns, joints), Output(RHYTHM, newest_ns, _rhythm(rows))]
-    if lone is not None:
-        outputs.append(Output(SEGMENT_MOTION, newest_ns, lone.collect(joints.captured_ns)))
-    return outputs
+    return [Output(JOINT_STATE, newest_ns, joints), Output(RHYTHM, newest_ns, _rhythm(rows))]
 
 
 def _joint_state(rows: list[Row], valid: list[bool], observed: list[Segment]) -> JointState:

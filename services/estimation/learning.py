@@ -8,7 +8,7 @@ from schemas.rhythm import KnownRhythm, LearnedJoint, LearnedRhythm
 from schemas.vocabulary import LOWER_BODY
 from services.biomech.rhythm.learned import Learned, LearnedStrides, velocity_waveform
 from services.biomech.rhythm.trusted import TrustedRhythm
-from services.estimation.lower_body.lower_body_filter import RHYTHM_CHANNELS, Row
+from services.estimation.rows import RHYTHM_CHANNELS, Row
 from services.flow.node import State
 
 LEAST_STRIDES = 3

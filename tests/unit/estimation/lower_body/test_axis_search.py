@@ -8,7 +8,7 @@ import pytest
 from schemas.session import Placement
 from schemas.vocabulary import Segment
 from services.biomech.rotations import angle_between
-from services.estimation.lower_body.alignment import AxisSearch, placed_right, principal_direction, walking_signs
+from services.estimation.lower_body.axis_search import AxisSearch, placed_right, principal_direction, walking_signs
 from services.estimation.parameters import AlignmentParameters
 from services.estimation.standing import StandingReference
 

@@ -9,9 +9,9 @@ import pytest
 from schemas.rhythm import KnownRhythm, LearnedRhythm
 from schemas.session import SessionDescription
 from services.biomech.rhythm.reading import RhythmReading
-from services.estimation.lower_body.learning import RHYTHM_CHANNELS, RhythmLearning
-from services.estimation.lower_body.lower_body_filter import Row
+from services.estimation.learning import RHYTHM_CHANNELS, RhythmLearning
 from services.estimation.lower_body.node import LowerBodyNode
+from services.estimation.rows import Row
 from tests.unit.estimation import estimation_walks as walks
 
 SECONDS = 12.0

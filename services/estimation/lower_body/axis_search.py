@@ -21,6 +21,7 @@ from scipy.signal import butter, lfilter
 from schemas.session import Placement, SensorDescription
 from schemas.vocabulary import Segment
 from services.biomech.rotations import angle_between, frame_from_up_and_right, normalised
+from services.estimation.alignment import Alignment
 from services.estimation.parameters import AlignmentParameters
 from services.estimation.samples import RATE
 from services.estimation.standing import StandingReference
@@ -46,19 +47,6 @@ class FlexionAxis:
     moving_s: float  # s of motion it rests on
     fastest: float  # rad/s about the axis
     sign_is_placed: bool  # the placement decided the sign
-
-
-@dataclass(frozen=True)
-class Alignment:
-    """R_segment_from_sensor (S, 3, 3), quality (S,) and which sensors have one (S,)."""
-
-    R_segment_from_sensor: Array
-    quality: Array
-    aligned: NDArray[np.bool_]
-
-    def first(self, count: int) -> "Alignment":
-        """The same of the first sensors only."""
-        return Alignment(self.R_segment_from_sensor[:count], self.quality[:count], self.aligned[:count])
 
 
 def placed_right(sensor: SensorDescription, up: Array) -> Array | None:

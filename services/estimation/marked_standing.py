@@ -13,7 +13,7 @@ from schemas.imu import ImuBatch, StandingMark
 from schemas.payload import Payload
 from schemas.session import SensorDescription
 from services.biomech.rotations import angle_between
-from services.estimation.lower_body.alignment import Alignment
+from services.estimation.alignment import Alignment
 from services.estimation.parameters import StandingParameters
 from services.estimation.samples import FORCE, RATE, Tick, TickBatch, pack_batches, unpack_batches
 from services.estimation.standing import THIGHS, StandingReference, Sums, refer, sits
