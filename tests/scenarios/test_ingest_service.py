@@ -239,7 +239,7 @@ def test_a_source_that_fails_midway_ends_and_leaves_the_others_alone(stage, monk
                     raise ValueError("torn cable")
                 yield message
 
-    monkeypatch.setattr("services.ingest.service.open_source", lambda *_, **__: Failing())
+    monkeypatch.setattr("services.ingest.service.open_chosen", lambda *_, **__: Failing())
     stage.start(speed=4.0, session="bad")
     wait_until(lambda: stage.ends("bad") == 2)
     wait_until(lambda: stage.ends("good") == 2)

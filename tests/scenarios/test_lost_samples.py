@@ -126,14 +126,32 @@ def states(node: LowerBodyNode, messages) -> list[JointState]:
     return [payload for payload in produced if isinstance(payload, JointState)]
 
 
-@pytest.mark.parametrize("resume_s", [OFF_S - 1.0, OFF_S + 1.0, BACK_S + 0.55, BACK_S + 1.5])
-def test_it_resumes_in_an_outage_as_if_it_had_not_stopped(resume_s):
+RESUMED_S = (OFF_S - 1.0, OFF_S + 1.0, BACK_S + 0.55, BACK_S + 1.5)
+
+
+@cache
+def frozen():
+    """Bursts and outages, what was said of them, and a node's state before each moment of `RESUMED_S`."""
     bursts = radio_loss(walk().sensors, 0.2, 3)
     faults = [*bursts, SensorOff("thigh_left", OFF_S, BACK_S), HubGap(BACK_S + 0.5, BACK_S + 1.0)]
     messages = list(Injection(walk().sensors, faults).apply(walk().messages))
-    before = [m for m in messages if m.envelope.captured_ns < resume_s * 1e9]
-    whole, first, second = (LowerBodyNode(walk().description) for _ in range(3))
-    expected = states(whole, messages)
-    begun = states(first, before)
-    second.restore(json.loads(json.dumps(first.snapshot())))
-    assert begun + states(second, messages[len(before) :]) == expected
+    node, kept, said, done = LowerBodyNode(walk().description), {}, [], 0
+    for resume_s in RESUMED_S:
+        count = sum(m.envelope.captured_ns < resume_s * 1e9 for m in messages)
+        said += states(node, messages[done:count])
+        kept[resume_s], done = (count, len(said), json.dumps(node.snapshot())), count
+    return messages, [*said, *states(node, messages[done:])], kept
+
+
+def test_to_be_frozen_in_an_outage_changes_nothing():
+    messages, said, _ = frozen()
+    assert states(LowerBodyNode(walk().description), messages) == said
+
+
+@pytest.mark.parametrize("resume_s", RESUMED_S)
+def test_it_resumes_in_an_outage_as_if_it_had_not_stopped(resume_s):
+    messages, said, kept = frozen()
+    count, said_before, state = kept[resume_s]
+    resumed = LowerBodyNode(walk().description)
+    resumed.restore(json.loads(state))
+    assert states(resumed, messages[count:]) == said[said_before:]
