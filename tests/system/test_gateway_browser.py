@@ -222,3 +222,13 @@ def test_a_timed_test_is_reported_by_its_parts_and_an_exercise_by_its_repetition
     assert "Peak flexion" in text(page, "section[aria-label=Exercise]")
     assert shown(page, "section[aria-label=Metrics]") == []
     assert browsers.complaints(page) == []
+
+
+def test_swapped_sensors_are_named_live_and_in_the_report(site, page):
+    swapped = begin(site.url, "synthetic:walk?worn=1&misworn=1&duration=40&seed=4", speed=4.0)
+    page.get(f"{site.url}/#/sessions/{swapped}")
+    wait(page, lambda: "swapped" in text(page, ".session-head .chip"), "the chip names the swap")
+    assert shown(page, "output.knee-now") in ([], ["–"])
+    wait(page, lambda: text(page, ".session-head .chip") == "Finished", "the session ends")
+    wait(page, lambda: "Thigh and shank sensor of the left leg" in text(page, "main"), "the report names it")
+    assert browsers.complaints(page) == []

@@ -32,6 +32,9 @@ class SessionParameters:
     rate: float = _dial(100.0, 20.0, 1000.0, "Hz of every sensor")
     feet: int = _dial(0, 0, 1, "1 adds a sensor on each shoe")
     worn: int = _dial(0, 0, 3, "0 pelvis and both legs, 1 the left leg alone, 2 the right leg, 3 the pelvis")
+    misworn: int = _dial(
+        0, 0, 3, "0 as declared, 1 thigh and shank sensors swapped, 2 thigh sensors upside down, 3 shank sensors"
+    )
     truth: int = _dial(1, 0, 1, "0 leaves out the reference stream")
     gyro_noise: float = _dial(0.005, 0.0, 1.0, "rad/s, standard deviation per sample")
     accel_noise: float = _dial(0.05, 0.0, 5.0, "m/s^2, standard deviation per sample")

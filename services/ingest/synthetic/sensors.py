@@ -1,7 +1,7 @@
 """What inertial sensors strapped to the walking body would say, and what spoils it."""
 
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
@@ -24,6 +24,7 @@ DRIFT_TIME_S = 600.0
 """Over which the drift of a bias is stated."""
 
 LEFT_LEG, RIGHT_LEG, PELVIS = 1, 2, 3
+SWAPPED, THIGH_UPSIDE_DOWN, SHANK_UPSIDE_DOWN = 1, 2, 3
 _WORN: dict[int, tuple[Segment, ...]] = {
     LEFT_LEG: (Segment.THIGH_LEFT, Segment.SHANK_LEFT),
     RIGHT_LEG: (Segment.THIGH_RIGHT, Segment.SHANK_RIGHT),
@@ -36,7 +37,9 @@ _WORN: dict[int, tuple[Segment, ...]] = {
 class Mount:
     """One sensor: where it sits and how it is turned. Axes of the case: x up the limb, z out of the skin."""
 
-    description: SensorDescription
+    description: SensorDescription  # as declared
+    segment: Segment  # that it is truly worn on
+    position: Array  # (3,) m, in that segment
     number: int  # of the place, whatever else is worn: a person's noise is drawn by it
     R_segment_from_sensor: NDArray[np.float64]
     gyro_bias: NDArray[np.float64]  # rad/s at time 0
@@ -64,7 +67,19 @@ _PLACES: tuple[tuple[str, Segment, Placement, tuple[float, float, float], tuple[
 def mounts(parameters: SessionParameters) -> list[Mount]:
     """The sensors of a session, turned and biased at random by its seed."""
     places = [(number, place) for number, place in enumerate(_PLACES) if _is_worn(place[1], parameters)]
-    return [_mount(parameters, number, *place) for number, place in places]
+    declared = [_mount(parameters, number, *place) for number, place in places]
+    return [_misworn(mount, declared, parameters.misworn) for mount in declared]
+
+
+def _misworn(mount: Mount, declared: list[Mount], how: int) -> Mount:
+    """The sensor as it is truly worn."""
+    part, _, side = mount.segment.partition("_")
+    if how == SWAPPED and part in ("thigh", "shank"):
+        other = f"{'shank' if part == 'thigh' else 'thigh'}_{side}"
+        return replace(next(each for each in declared if each.segment == other), description=mount.description)
+    if (how, part) in ((THIGH_UPSIDE_DOWN, "thigh"), (SHANK_UPSIDE_DOWN, "shank")):
+        return replace(mount, R_segment_from_sensor=mount.R_segment_from_sensor @ np.diag([-1.0, -1.0, 1.0]))
+    return mount
 
 
 def _is_worn(segment: Segment, parameters: SessionParameters) -> bool:
@@ -96,6 +111,8 @@ def _mount(
             placement=placement,
             position_in_segment=list(position),
         ),
+        segment,
+        np.array(position),
         number,
         twist @ _nominal(np.array(outward)),
         rng.normal(0.0, parameters.gyro_bias, 3),
@@ -130,7 +147,7 @@ def measure(mount: Mount, body: BodyMotion, phase: Jet, amplitude: Jet) -> tuple
     gravity. Soft tissue turns the case about an axis of the segment in place.
     """
     cased = _wobbling(mount, body, phase, amplitude)
-    spot: PointMotion = body.point(np.array(mount.description.position_in_segment))
+    spot: PointMotion = body.point(mount.position)
     R_world_from_sensor = cased.R_world_from_body @ mount.R_segment_from_sensor
     return (
         _in_sensor(R_world_from_sensor, cased.angular_velocity),

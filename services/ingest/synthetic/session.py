@@ -16,7 +16,18 @@ from services.ingest.synthetic.gait import Gait, Strides, WalkingBody
 from services.ingest.synthetic.jets import Array, Jet
 from services.ingest.synthetic.parameters import SessionParameters
 from services.ingest.synthetic.rigid import PointMotion
-from services.ingest.synthetic.sensors import LEFT_LEG, PELVIS, RIGHT_LEG, Mount, measure, mounts, spoiled
+from services.ingest.synthetic.sensors import (
+    LEFT_LEG,
+    PELVIS,
+    RIGHT_LEG,
+    SHANK_UPSIDE_DOWN,
+    SWAPPED,
+    THIGH_UPSIDE_DOWN,
+    Mount,
+    measure,
+    mounts,
+    spoiled,
+)
 from services.ingest.synthetic.timeline import Timeline
 from services.ingest.tracks import ImuTrack, ReferenceTrack
 
@@ -31,6 +42,11 @@ _WORN_IN_WORDS = {
     LEFT_LEG: ", sensors on the left leg alone",
     RIGHT_LEG: ", sensors on the right leg alone",
     PELVIS: ", a sensor on the pelvis alone",
+}
+_MISWORN_IN_WORDS = {
+    SWAPPED: ", thigh and shank swapped",
+    THIGH_UPSIDE_DOWN: ", thigh sensor upside down",
+    SHANK_UPSIDE_DOWN: ", shank sensor upside down",
 }
 
 
@@ -96,7 +112,7 @@ class SyntheticSession(ABC):
         parameters = self.parameters
         return SessionDescription(
             session=session,
-            title=self.title + _WORN_IN_WORDS.get(parameters.worn, ""),
+            title=self.title + _WORN_IN_WORDS.get(parameters.worn, "") + _MISWORN_IN_WORDS.get(parameters.misworn, ""),
             started_unix_ns=started_unix_ns,
             origin="synthetic",
             protocol=self.protocol,
@@ -145,7 +161,7 @@ class SyntheticSession(ABC):
     def _track(
         self, mount: Mount, block: int, body: WalkingBody, strides: Strides, captured_ns: "np.typing.NDArray[np.int64]"
     ) -> ImuTrack:
-        truth = measure(mount, body.segments[mount.description.segment], *self.soft_tissue(strides))
+        truth = measure(mount, body.segments[mount.segment], *self.soft_tissue(strides))
         rng = np.random.default_rng([self.parameters.seed, 3, mount.number, block])
         rate, force = spoiled(mount, truth, self.parameters, rng)
         drifted = (captured_ns / 1e9)[:, None] * mount.gyro_drift
