@@ -34,7 +34,7 @@ $(DIST)/.built: $(wildcard $(WEB)/*.json $(WEB)/*.mjs $(WEB)/*.html $(WEB)/src/*
 
 web: $(DIST)/.built ## build the web page
 
-demo: install ## two synthetic patients (and a recorded walk where there is one), live in the browser
+demo: install ## synthetic patients (and a recorded walk where there is one), live in the browser
 	$(BIN)/ambula up --demo
 
 test: install ## all tests, in two processes (WORKERS=1 for one)

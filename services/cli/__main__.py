@@ -78,7 +78,7 @@ def options(
 
 @app.command()
 def up(
-    demo: Annotated[bool, typer.Option("--demo", help="also start two synthetic patients and a recorded walk")] = False,
+    demo: Annotated[bool, typer.Option("--demo", help="also start synthetic patients and a recorded walk")] = False,
     seconds: Annotated[float | None, typer.Option("--for", help="stop by itself after so many seconds")] = None,
 ) -> None:
     """Start all services on this machine and keep them running until Ctrl-C."""

@@ -15,6 +15,8 @@ SERVICES = ["archive", "estimation", "segmentation", "metrics", "gateway", "inge
 DEMO_SOURCES = (
     "synthetic:walk?speed=1.15&seed=1&duration=900",
     "synthetic:walk?speed=0.7&asymmetry=0.25&seed=2&duration=900",
+    "synthetic:knee?exercise=1&seed=2&duration=900",
+    "synthetic:tug?worn=1&seed=4&attempts=20",
     "neura_s02_walk",
 )
 
