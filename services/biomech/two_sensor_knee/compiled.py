@@ -10,7 +10,10 @@ from services.biomech.kernels.compiled import sources_fingerprint
 
 Function = TypeVar("Function", bound=Callable[..., Any])
 
-_FASTMATH = {"contract", "arcp", "nsz", "reassoc"}
+_FASTMATH = {"arcp", "nsz", "reassoc"}
+"""Without "contract": which products are fused with sums then depends on whether the code was just compiled or comes
+from the disk, and a session that is resumed after a first start would differ in the last bit."""
+
 _STAMP = sources_fingerprint(Path(__file__).parent)
 
 
