@@ -10,18 +10,16 @@ from services.biomech.kernels.compiled import sources_fingerprint
 
 Function = TypeVar("Function", bound=Callable[..., Any])
 
-_FASTMATH = {"arcp", "nsz", "reassoc"}
-"""Without "contract": which products are fused with sums then depends on whether the code was just compiled or comes
-from the disk, and a session that is resumed after a first start would differ in the last bit."""
-
 _STAMP = sources_fingerprint(Path(__file__).parent)
 
 
 def compiled(function: Function) -> Function:
     """Compile on first use and keep the machine code on disk until any file of this folder changes.
 
-    Not a number stays not a number: that is how unusable samples are told. Of fastmath only what keeps that.
+    No fastmath. Not a number stays not a number: that is how unusable samples are told. And nested functions whose sums
+    may be reordered come out otherwise when they were just compiled than when they are loaded: a session resumed after
+    a first start would differ in the last bit.
     """
-    dispatcher = numba.njit(cache=True, error_model="numpy", nogil=True, fastmath=_FASTMATH)(function)
+    dispatcher = numba.njit(cache=True, error_model="numpy", nogil=True)(function)
     dispatcher._cache._cache_file._source_stamp = _STAMP
     return dispatcher  # type: ignore[no-any-return]
