@@ -14,11 +14,7 @@ WARM_UPS = (
     "from services.estimation.lower_body.warm_up import warm_up; warm_up()",
     "from services.estimation.knee.warm_up import warm_up; warm_up()",
 )
-"""The two halves of what takes long to compile where nothing is compiled yet.
-
-In processes of their own: the knee's code differs in the last bit between the process that compiled it and those that
-load it from disk, and the tests compare processes to the bit.
-"""
+"""The two halves of what takes long to compile where nothing is compiled yet, each in a process of its own."""
 
 
 @pytest.hookimpl(optionalhook=True)
