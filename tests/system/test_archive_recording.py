@@ -17,15 +17,8 @@ from schemas.health import Health, Progress, Reason
 from schemas.imu import ImuBatch, SensorSamples
 from schemas.session import Anthropometry, HubDescription, SessionDescription
 from schemas.signals import (
-    CALIBRATION,
-    GAIT_EVENT,
     IMU,
-    JOINT_STATE,
-    LEARNED_RHYTHM,
-    METRICS,
-    RHYTHM,
-    SEGMENT_MOTION,
-    STRIDE,
+    SIGNALS,
     checkpoint_key,
     command_key,
     description_key,
@@ -43,8 +36,7 @@ from services.flow.message import Envelope, Stream
 
 pytestmark = pytest.mark.system
 HUB = Stream(IMU, "hub")
-SIGNALS = (CALIBRATION, JOINT_STATE, RHYTHM, SEGMENT_MOTION, LEARNED_RHYTHM, GAIT_EVENT, STRIDE, METRICS)
-COMPUTED = [Stream(each, each.producer) for each in SIGNALS]
+COMPUTED = [Stream(each, each.producer) for each in SIGNALS if each.archived == "derived"]
 RATE_HZ = 100
 
 
