@@ -6,7 +6,7 @@ import numpy as np
 
 from schemas.tasks import Repetition
 from schemas.vocabulary import Side
-from services.bench.repetitions.runs import of_reference, through_chain
+from services.bench.repetitions.runs import of_reference, strides_of, through_chain
 from services.bench.repetitions.scores import mean_absolute
 from services.bench.scoreboard import Row, at_most, informative
 from services.ingest.errors import SourceError
@@ -78,10 +78,10 @@ def walking_rows() -> list[Row]:
     rows: list[Row] = []
     for name, spec in WALKS.items():
         try:
-            run = through_chain(spec)
+            run, strides = through_chain(spec), strides_of(spec)
         except (SourceError, ValueError) as error:
             rows.append(Row(f"{name}: {error}"[:120], None, "", None, None, None))
             continue
         counted = sum(one.valid for one in run.repetitions)
-        rows.append(at_most(f"{name}: steps counted", 100 * counted / max(run.strides, 1), "%", 1.0, run.strides))
+        rows.append(at_most(f"{name}: steps counted", 100 * counted / strides, "%", 1.0, strides))
     return rows

@@ -28,7 +28,6 @@ class Run:
     """What came out of a session, and the truth beside it."""
 
     repetitions: list[Repetition] = field(default_factory=list)
-    strides: int = 0
     rhythm: list[tuple[int, float, bool]] = field(default_factory=list)  # ns, rad, locked
     reference: list[tuple[int, list[float | None]]] = field(default_factory=list)
     channels: list[str] = field(default_factory=list)
@@ -58,8 +57,6 @@ def through_chain(spec: str, estimator: str | None = None) -> Run:
             payload = produced.payload
             if isinstance(payload, Repetition):
                 run.repetitions.append(payload)
-            elif isinstance(payload, Stride):
-                run.strides += 1
             elif isinstance(payload, JointState) and payload.captured_ns:
                 for side in Side:
                     if payload.valid[INDEX[f"knee_flexion_{side}"]]:
@@ -67,6 +64,14 @@ def through_chain(spec: str, estimator: str | None = None) -> Run:
             elif isinstance(payload, Rhythm):
                 run.rhythm += zip(payload.captured_ns, payload.phase, payload.locked, strict=True)
     return run
+
+
+def strides_of(spec: str) -> int:
+    """How many strides the same source has as a walk. Raises SourceError when it cannot be read."""
+    source = open_source(spec, task=Task.WALK)
+    chain = build_chain(source.describe())
+    messages = (message for message in iter_messages(source) if not isinstance(message.payload, ReferenceBatch))
+    return sum(isinstance(produced.payload, Stride) for message in messages for produced in chain.push(message))
 
 
 def of_exact_angles(session: SyntheticKnee) -> list[Repetition]:
