@@ -26,6 +26,7 @@ def line_chart(
     levels: Mapping[str, float] | None = None,
     colours: Mapping[str, str] | None = None,
     dots: Collection[str] = (),
+    dashed: Collection[str] = (),
 ) -> str:
     """An SVG document with one line per entry of `lines`, the first on top.
 
@@ -39,6 +40,7 @@ def line_chart(
         levels: y of dashed levels across the chart, by name.
         colours: of lines by name; the others take their turn in COLOURS.
         dots: names whose points are not joined.
+        dashed: names of dashed lines.
 
     Raises:
         ValueError: there is nothing to draw.
@@ -63,8 +65,9 @@ def line_chart(
     for i, (name, line) in reversed(list(enumerate(lines.items()))):
         drawn = [place(log10(x) if log_x else x, y) if isfinite(y) else None for x, y in line]
         colour = colours.get(name, COLOURS[i % len(COLOURS)])
-        parts += _dots(drawn, colour) if name in dots else _line(drawn, colour)
-        parts += _legend(colour, name, i)
+        dashes = DASHES[0] if name in dashed else ""
+        parts += _dots(drawn, colour) if name in dots else _line(drawn, colour, dashes)
+        parts += _spot(colour, name, i) if name in dots else _legend(colour, name, i, dashes)
     parts += _labels(x_label, y_label)
     size = f'width="{WIDTH}" height="{HEIGHT}" viewBox="0 0 {WIDTH} {HEIGHT}"'
     head = f'<svg xmlns="http://www.w3.org/2000/svg" {size} font-family="sans-serif">'
@@ -106,10 +109,10 @@ def _ticks(values: Sequence[float], *, whole: bool = False) -> list[float]:
     return [round(k * step, 12) for k in range(first, last + 1)]
 
 
-def _line(points: Sequence[tuple[float, float] | None], colour: str) -> list[str]:
+def _line(points: Sequence[tuple[float, float] | None], colour: str, dashes: str) -> list[str]:
     pieces = [[point for point in piece if point] for there, piece in groupby(points, bool) if there]
-    parts = [_polyline(piece, colour) for piece in pieces]
-    if len(points) <= FEW:
+    parts = [_polyline(piece, colour, dashes) for piece in pieces]
+    if 2 < len(points) <= FEW:
         parts += [f'<circle cx="{x:.1f}" cy="{y:.1f}" r="2.8" fill="{colour}"/>' for piece in pieces for x, y in piece]
     return parts
 
@@ -129,6 +132,11 @@ def _legend(colour: str, name: str, place: int, dashes: str = "") -> list[str]:
     x, y = WIDTH - RIGHT + 14, TOP + 8 + 20 * place
     style = f'stroke="{colour}" stroke-width="2" stroke-dasharray="{dashes or "none"}"'
     return [_rule(x, y, x + 20, y, style), _text(x + 27, y + 4, name)]
+
+
+def _spot(colour: str, name: str, place: int) -> list[str]:
+    x, y = WIDTH - RIGHT + 14, TOP + 8 + 20 * place
+    return [f'<circle cx="{x + 10:.1f}" cy="{y:.1f}" r="3" fill="{colour}"/>', _text(x + 27, y + 4, name)]
 
 
 def _rule(x1: float, y1: float, x2: float, y2: float, style: str = 'stroke="#dddddd"') -> str:

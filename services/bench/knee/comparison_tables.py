@@ -99,6 +99,7 @@ def _differences(trial: str, judged: Sequence[Judged]) -> str:
             name = f"{one.method}: {title}"
             lines[name] = [(float(mean.min()), level), (float(mean.max()), level)]
             colours[name] = COLOURS[one.method]
+    limits = [name for name in lines if name.endswith("limit")]
     return line_chart(
         f"{trial}: difference over mean (Bland-Altman)",
         "mean of estimate and truth, deg",
@@ -107,6 +108,7 @@ def _differences(trial: str, judged: Sequence[Judged]) -> str:
         from_zero=False,
         dots=dots,
         colours=colours,
+        dashed=limits,
     )
 
 
