@@ -74,6 +74,10 @@ def stack(tmp_path_factory, free_router):
         yield Stack(supervisor, settings, data)
 
 
+OF_ALL_ROWS = ("model", "valid", "observed")
+"""Fields of a message that hold for each of its samples."""
+
+
 def rows(messages: list[Message]) -> list[tuple]:
     """What the messages say, one row a sample: how many samples share a message depends on the load."""
     said: list[tuple] = []
@@ -86,8 +90,9 @@ def rows(messages: list[Message]) -> list[tuple]:
                     values = zip(samples.captured_ns, samples.angular_velocity, samples.specific_force, strict=True)
                     said += [(captured_ns, s, gyro, force) for captured_ns, gyro, force in values]
             case JointState() | Rhythm() | ReferenceBatch():
-                columns = [value for value in dict(message.payload).values() if isinstance(value, list)]
-                said += zip(*[column for column in columns if len(column) == len(columns[0])], strict=True)
+                fields = dict(message.payload)
+                columns = [value for name, value in fields.items() if name not in OF_ALL_ROWS]
+                said += [(*row, *(fields.get(name) for name in OF_ALL_ROWS)) for row in zip(*columns, strict=True)]
             case payload:
                 said.append((encode_payload(payload),))
     return sorted(said) if message.stream.signal is IMU else said

@@ -66,7 +66,7 @@ def test_a_session_whose_producer_died_is_frozen_and_goes_on_when_it_returns(
     ingest.token.close()
     wait_until(lambda: "event=session_closed" in caplog.text)
     assert "event=session_gone session=s" in caplog.text
-    assert keeper.history[-1].inputs["imu/hub"].sequence == 19
+    wait_until(lambda: keeper.history and keeper.history[-1].inputs["imu/hub"].sequence == 19)
     ingest.token = ingest.bus.declare_token(f"ambula/test/@session/{ingest.session}")
     ingest.send(5)
     ingest.end()
