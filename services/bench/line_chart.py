@@ -51,12 +51,7 @@ def line_chart(
     levels, colours = levels or {}, colours or {}
     heights = [*(y for _, y in points), *([0.0] if from_zero else []), *levels.values()]
     x_ticks, y_ticks = _ticks([x for x, _ in points], whole=log_x), _ticks(heights)
-
-    def place(x: float, y: float) -> tuple[float, float]:
-        across = (x - x_ticks[0]) / (x_ticks[-1] - x_ticks[0])
-        up = (y - y_ticks[0]) / (y_ticks[-1] - y_ticks[0])
-        return LEFT + across * (WIDTH - LEFT - RIGHT), HEIGHT - BOTTOM - up * (HEIGHT - TOP - BOTTOM)
-
+    place = _placing(x_ticks, y_ticks)
     parts = [_text(LEFT, TOP - 20, title, size=15), *_grid(place, x_ticks, y_ticks, log_x=log_x)]
     for i, (name, height) in enumerate(levels.items()):
         y = place(x_ticks[0], height)[1]
@@ -72,6 +67,18 @@ def line_chart(
     size = f'width="{WIDTH}" height="{HEIGHT}" viewBox="0 0 {WIDTH} {HEIGHT}"'
     head = f'<svg xmlns="http://www.w3.org/2000/svg" {size} font-family="sans-serif">'
     return "\n".join([head, f'<rect width="{WIDTH}" height="{HEIGHT}" fill="white"/>', *parts, "</svg>", ""])
+
+
+def _placing(x_ticks: Sequence[float], y_ticks: Sequence[float]) -> Callable[[float, float], tuple[float, float]]:
+    """From values to places on the sheet."""
+    width, height = WIDTH - LEFT - RIGHT, HEIGHT - TOP - BOTTOM
+
+    def place(x: float, y: float) -> tuple[float, float]:
+        across = (x - x_ticks[0]) / (x_ticks[-1] - x_ticks[0])
+        up = (y - y_ticks[0]) / (y_ticks[-1] - y_ticks[0])
+        return LEFT + across * width, HEIGHT - BOTTOM - up * height
+
+    return place
 
 
 def _grid(

@@ -5,10 +5,9 @@ from collections.abc import Sequence
 import numpy as np
 
 from schemas.rhythm import KnownRhythm, LearnedJoint, LearnedRhythm
-from schemas.vocabulary import LOWER_BODY
 from services.biomech.rhythm.learned import Learned, LearnedStrides, velocity_waveform
 from services.biomech.rhythm.trusted import TrustedRhythm
-from services.estimation.rows import RHYTHM_CHANNELS, Row
+from services.estimation.rows import INDEX, RHYTHM_CHANNELS, Row
 from services.flow.node import State
 
 LEAST_STRIDES = 3
@@ -16,7 +15,7 @@ LEAST_STRIDES = 3
 OWN_KINDS = ("previous trial", "previous visit")
 """Known rhythms that the estimator starts from, the nearest first. An exemplar is somebody else: only to compare."""
 
-_JOINTS = [[dof.name for dof in LOWER_BODY].index(name) for name in RHYTHM_CHANNELS]
+_JOINTS = [INDEX[name] for name in RHYTHM_CHANNELS]
 
 
 class RhythmLearning:

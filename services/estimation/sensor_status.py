@@ -1,11 +1,11 @@
-"""What the screen says of the sensors, and while there is nothing else to show."""
+"""What the screen says of the sensors."""
 
 from collections.abc import Iterable, Sequence
 
 import numpy as np
 from numpy.typing import NDArray
 
-from schemas.kinematics import LivePose, SensorStatus
+from schemas.kinematics import SensorStatus
 from schemas.session import SensorDescription
 from schemas.vocabulary import SensorState
 from services.estimation.sensor_checks import SensorChecks
@@ -46,18 +46,3 @@ def sensor_troubles(statuses: Sequence[SensorStatus]) -> str:
     """One sentence on what is wrong with the sensors; empty when nothing is."""
     parts = [f"{status.sensor} {STATE_WORDS[status.state]}" for status in statuses if status.state in STATE_WORDS]
     return "Sensor " + ", ".join(parts) if parts else ""
-
-
-def waiting_pose(captured_ns: int, phase: str, message: str, notice: str, statuses: list[SensorStatus]) -> LivePose:
-    """The picture before there is an estimate."""
-    return LivePose(
-        captured_ns=captured_ns,
-        phase=phase,
-        message=message,
-        notice=notice,
-        segments=[],
-        angles={},
-        angles_std={},
-        sensors=statuses,
-        cadence_per_min=None,
-    )

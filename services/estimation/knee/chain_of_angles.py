@@ -13,10 +13,9 @@ from schemas.vocabulary import LOWER_BODY, Side
 from services.biomech.rhythm.trusted import TrustedRhythm
 from services.estimation.knee.leg import LegState
 from services.estimation.parameters import KneeParameters
-from services.estimation.rows import RHYTHM_CHANNELS, Row
+from services.estimation.rows import INDEX, RHYTHM_CHANNELS, Row
 from services.flow.node import State
 
-INDEX = {dof.name: i for i, dof in enumerate(LOWER_BODY)}
 HEADING = INDEX["pelvis_rotation"]
 _CHANNELS = [INDEX[name] for name in RHYTHM_CHANNELS]
 

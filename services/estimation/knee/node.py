@@ -198,11 +198,11 @@ class KneeNode:
 
     def _picture(self, captured_ns: int, run: "_Run") -> list[Output]:
         if not self._has_started:
-            if not self._screen.is_due(captured_ns):
+            if not self._screen.pace.is_due(captured_ns):
                 return []
             pose = self._screen.waiting(captured_ns, self._marks.notice_at(captured_ns), self._reference)
             return [Output(LIVE_POSE, captured_ns, pose)]
-        if run.last is None or not self._screen.is_due(run.last.captured_ns):
+        if run.last is None or not self._screen.pace.is_due(run.last.captured_ns):
             return []
         now_ns = run.last.captured_ns
         pose = self._screen.drawn(run.last, run.valid, self._marks.notice_at(now_ns), self._reference)
@@ -220,7 +220,7 @@ class KneeNode:
             "chain": self._chain.snapshot(),
             "learning": self._learning.snapshot(),
             "fitted": self._fitted.snapshot(),
-            "times_ns": [self._first_settled_ns, self._looked_ns, self._screen.next_ns],
+            "times_ns": [self._first_settled_ns, self._looked_ns, self._screen.pace.next_ns],
             "has_started": self._has_started,
         }
 
@@ -236,7 +236,7 @@ class KneeNode:
         self._chain.restore(state["chain"])
         self._learning.restore(state["learning"])
         self._fitted.restore(state["fitted"])
-        self._first_settled_ns, self._looked_ns, self._screen.next_ns = state["times_ns"]
+        self._first_settled_ns, self._looked_ns, self._screen.pace.next_ns = state["times_ns"]
         self._has_started = state["has_started"]
 
 

@@ -4,8 +4,9 @@ from schemas.health import Rejection
 from schemas.kinematics import LivePose
 from schemas.session import SessionDescription
 from schemas.signals import IMU, LIVE_POSE, SIGNALS, Signal
+from services.estimation.live_pose import waiting_pose
 from services.estimation.parameters import EstimationParameters
-from services.estimation.sensor_status import unused_statuses, waiting_pose
+from services.estimation.sensor_status import unused_statuses
 from services.flow.message import Message, Output, Stream
 from services.flow.node import State
 

@@ -11,10 +11,10 @@ from schemas.vocabulary import Segment, SensorState
 from services.biomech.lower_body import LowerBodyModel
 from services.estimation.intake import Intake
 from services.estimation.knee.leg import Leg
-from services.estimation.knee.picture import knee_pose, leg_pictures
 from services.estimation.knee.wording import WRONG_UNITS, misplacement_words, wishes
+from services.estimation.live_pose import Pace, estimated_pose, segment_pictures, waiting_pose
 from services.estimation.rows import Row
-from services.estimation.sensor_status import sensor_statuses, sensor_troubles, unused_statuses, waiting_pose
+from services.estimation.sensor_status import sensor_statuses, sensor_troubles, unused_statuses
 from services.estimation.standing import StandingReference
 
 Array = NDArray[np.float64]
@@ -27,15 +27,8 @@ class Screen:
         self._intake = intake
         self._legs = legs
         self._model = LowerBodyModel(description.anthropometry)
-        self._period_ns = round(1e9 / rate_hz)
-        self.next_ns = 0
-
-    def is_due(self, captured_ns: int) -> bool:
-        """Whether a picture at this time is the next one."""
-        if captured_ns < self.next_ns:
-            return False
-        self.next_ns = (captured_ns // self._period_ns + 1) * self._period_ns
-        return True
+        self._segments = [segment for leg in legs for segment in leg.worn.segments]
+        self.pace = Pace(rate_hz)
 
     def waiting(self, captured_ns: int, notice: str, reference: StandingReference | None) -> LivePose:
         """Before there is an angle."""
@@ -47,8 +40,8 @@ class Screen:
         """Of the newest row."""
         unseen: frozenset[Segment] = frozenset().union(*(leg.unseen for leg in self._legs))
         statuses, message = self._said(row.captured_ns, reference)
-        bones = leg_pictures(self._model, row.position, [leg.worn for leg in self._legs], unseen)
-        return knee_pose(row, bones, valid, message, notice, statuses)
+        bones = segment_pictures(self._model, np.array(row.position), self._segments, unseen)
+        return estimated_pose(row, bones, valid, message, notice, statuses)
 
     def _said(self, captured_ns: int, reference: StandingReference | None) -> tuple[list[SensorStatus], str]:
         """The sensors' states, and the one thing that matters most."""

@@ -12,27 +12,28 @@ from schemas.imu import StandingMark
 from schemas.rhythm import LearnedRhythm
 from schemas.session import SessionDescription
 from schemas.signals import CALIBRATION, JOINT_STATE, LEARNED_RHYTHM, LIVE_POSE, RHYTHM, SEGMENT_MOTION, Signal
-from schemas.vocabulary import LOWER_BODY, Segment
+from schemas.vocabulary import Segment
 from services.biomech.event_sources import lone_segments, worn_segments
+from services.biomech.lower_body import SEGMENTS
 from services.estimation.estimates import estimates
 from services.estimation.intake import Intake, used_by_lower_body
 from services.estimation.learning import RhythmLearning, start_rhythm
+from services.estimation.live_pose import Pace, estimated_pose, segment_pictures, waiting_pose
 from services.estimation.lower_body.calibration_message import calibration_message
 from services.estimation.lower_body.calibrator import Calibrator, pack_calibrated, unpack_calibrated
-from services.estimation.lower_body.live_pose import estimated_pose
 from services.estimation.lower_body.lower_body_filter import Calibrated, LowerBodyFilter
 from services.estimation.lower_body.resting_bias import RestingBias
 from services.estimation.lower_body.segment_motion import LoneSegments
 from services.estimation.marked_standing import Marks
 from services.estimation.parameters import EstimationParameters
-from services.estimation.rows import Row
+from services.estimation.rows import INDEX, Row
 from services.estimation.samples import Tick, TickBatch
-from services.estimation.sensor_status import sensor_statuses, unused_statuses, waiting_pose
+from services.estimation.sensor_status import sensor_statuses, sensor_troubles, unused_statuses
 from services.estimation.standing import StandingReference
 from services.flow.message import Message, Output, Stream
 from services.flow.node import State
 
-TILT, OBLIQUITY = ([dof.name for dof in LOWER_BODY].index(f"pelvis_{name}") for name in ("tilt", "obliquity"))
+TILT, OBLIQUITY = INDEX["pelvis_tilt"], INDEX["pelvis_obliquity"]
 
 
 class LowerBodyNode:
@@ -55,7 +56,7 @@ class LowerBodyNode:
         self._bias: RestingBias | None = None
         self._learning = RhythmLearning()
         self._marks = Marks(self._intake.sensors, self._parameters.standing, self._parameters.notice_s)
-        self._next_live_ns = 0
+        self._pace = Pace(self._parameters.live_rate_hz)
 
     @property
     def streams(self) -> tuple[Stream, ...]:
@@ -123,7 +124,7 @@ class LowerBodyNode:
         return [Output(CALIBRATION, now_ns, calibration_message(self._description, self._intake, calibrated))]
 
     def _wait(self, now_ns: int) -> list[Output]:
-        if not self._is_live_due(now_ns):
+        if not self._pace.is_due(now_ns):
             return []
         phase = "waiting" if self._calibrator.reference is None else "calibrating"
         sensors, checks = self._intake.sensors, self._intake.checks
@@ -216,24 +217,16 @@ class LowerBodyNode:
 
     def _picture(self, running: LowerBodyFilter, row: Row) -> list[Output]:
         """The picture of the newest row, when its time has come. None while catching up: nobody could watch it."""
-        if self._calibrator.batches or not self._is_live_due(row.captured_ns):
+        if self._calibrator.batches or not self._pace.is_due(row.captured_ns):
             return []
         assert self._calibrated is not None
         refused, waiting = self._calibrator.refused, ~self._calibrated.alignment.aligned
         statuses = sensor_statuses(self._intake.sensors, self._intake.checks, row.captured_ns, refused, waiting)
         statuses += unused_statuses(self._intake.unused)
         notice = self._marks.notice_at(row.captured_ns)
-        pose = estimated_pose(
-            row, running.model, running.ekf.estimate[0], running.valid, running.unseen, notice, statuses
-        )
+        bones = segment_pictures(running.model, running.ekf.estimate[0], SEGMENTS, running.unseen)
+        pose = estimated_pose(row, bones, running.valid, sensor_troubles(statuses), notice, statuses)
         return [Output(LIVE_POSE, row.captured_ns, pose)]
-
-    def _is_live_due(self, captured_ns: int) -> bool:
-        if captured_ns < self._next_live_ns:
-            return False
-        period_ns = round(1e9 / self._parameters.live_rate_hz)
-        self._next_live_ns = (captured_ns // period_ns + 1) * period_ns
-        return True
 
     def snapshot(self) -> State:
         """Everything that changes."""
@@ -246,7 +239,7 @@ class LowerBodyNode:
             "bias": None if self._bias is None else self._bias.snapshot(),
             "learning": self._learning.snapshot(),
             "marks": self._marks.snapshot(),
-            "next_live_ns": self._next_live_ns,
+            "next_live_ns": self._pace.next_ns,
         }
 
     def restore(self, state: State) -> None:
@@ -264,7 +257,7 @@ class LowerBodyNode:
                 self._believe(running, self._bias.bias)
         self._learning.restore(state["learning"])
         self._marks.restore(state["marks"])
-        self._next_live_ns = state["next_live_ns"]
+        self._pace.next_ns = state["next_live_ns"]
 
 
 def _learned(rhythm: LearnedRhythm | None) -> list[Output]:
