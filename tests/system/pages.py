@@ -1,7 +1,11 @@
 """What browser tests share: a running floor, and the hands and eyes of a person at its page."""
 
+import contextlib
+import json
 import os
 import socket
+import urllib.error
+import urllib.request
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from dataclasses import dataclass
@@ -68,6 +72,18 @@ def open_site(recordings: Path) -> Iterator[Site]:
     with Supervisor(SERVICES, settings, environment=environment) as supervisor:
         supervisor.wait_until_ready(timeout_s=180)
         yield Site(f"http://127.0.0.1:{port}", supervisor)
+
+
+def end_all(url: str) -> None:
+    """Stop whatever is still live."""
+    with urllib.request.urlopen(f"{url}/v1/sessions?state=live", timeout=30) as answer:
+        living = json.load(answer)["items"]
+    for session in living:
+        # It may end by itself in between.
+        with contextlib.suppress(urllib.error.HTTPError):
+            urllib.request.urlopen(
+                urllib.request.Request(f"{url}/v1/sessions/{session['id']}/stop", b""), timeout=30
+            ).close()
 
 
 def free_port() -> int:
