@@ -5,6 +5,7 @@ from typing import Any
 from pydantic import Field, model_validator
 
 from schemas.payload import Payload, SessionTime, Vector3
+from schemas.standing import StandingMark
 
 
 class SensorSamples(Payload):
@@ -19,14 +20,6 @@ class SensorSamples(Payload):
         if not len(self.captured_ns) == len(self.angular_velocity) == len(self.specific_force):
             raise ValueError("captured_ns, angular_velocity and specific_force differ in length")
         return self
-
-
-class StandingMark(Payload):
-    """The operator says, while the session runs, that the person stood still. It counts from `given_ns` on."""
-
-    from_ns: SessionTime
-    to_ns: SessionTime
-    given_ns: SessionTime = Field(description="ns: newest sample of the session when the mark came; later ones know it")
 
 
 class ImuBatch(Payload):

@@ -5,7 +5,7 @@ from typing import Any
 from pydantic import Field, model_validator
 
 from schemas.payload import Payload, QuaternionWXYZ, SessionTime, Vector3
-from schemas.vocabulary import EventSource, Misplacement, Segment, SensorState, Side
+from schemas.vocabulary import EventSource, JointCentre, Misplacement, Segment, SensorState, Side
 
 
 class JointState(Payload):
@@ -23,6 +23,14 @@ class JointState(Payload):
         description="segments with a sensor of their own: the whole chain of angles gives their tilt in the world "
         "rightly, also where the joints between them and the pelvis are not valid one by one",
     )
+
+
+class JointCentres(Payload):
+    """Where the joint centres are as estimated, in the order of JointCentre, in the axes of the skeleton's room."""
+
+    captured_ns: list[SessionTime]
+    position: list[list[Vector3]] = Field(description="m, n x 15")
+    seen: list[bool] = Field(description="per centre: the camera has seen it in the last moments")
 
 
 class SegmentSamples(Payload):
@@ -67,12 +75,18 @@ class Calibration(Payload):
     events_from: dict[Side, EventSource] = Field(description="what tells the gait events of each leg")
     unused: dict[str, str] = Field(description="sensors that are not used, and why, by name")
     misplaced: dict[Side, list[Misplacement]] = Field(description="legs whose sensors are worn otherwise than declared")
+    lengths: dict[str, float] = Field(description="m, of segments as estimated, by name; empty where none is estimated")
+    absolute: bool = Field(
+        description="whether angles refer to a known posture; if not, each carries an unknown constant offset"
+    )
 
     @model_validator(mode="before")
     @classmethod
     def _of_an_older_writer(cls, fields: Any) -> Any:
-        """Earlier ones did not say what told the events, what was left out, nor what was worn otherwise."""
-        return {"events_from": {}, "unused": {}, "misplaced": {}, **fields} if isinstance(fields, dict) else fields
+        """Earlier ones did not say what told the events, what was left out, nor what was worn otherwise; they had a
+        known posture and took lengths as given."""
+        before = {"events_from": {}, "unused": {}, "misplaced": {}, "lengths": {}, "absolute": True}
+        return {**before, **fields} if isinstance(fields, dict) else fields
 
 
 class SegmentPose(Payload):
@@ -92,6 +106,15 @@ class SensorStatus(Payload):
     since_ns: SessionTime
 
 
+class CameraStatus(Payload):
+    """State of one camera for the screen."""
+
+    camera: str
+    state: SensorState
+    people: int = Field(ge=0, description="number of bodies in view")
+    since_ns: SessionTime
+
+
 class LivePose(Payload):
     """The view: 20-30 Hz, best effort, not archived."""
 
@@ -103,4 +126,8 @@ class LivePose(Payload):
     angles: dict[str, float] = Field(description="rad, by degree of freedom; only valid ones")
     angles_std: dict[str, float] = Field(description="rad, by degree of freedom; only valid ones")
     sensors: list[SensorStatus]
+    centres: dict[JointCentre, Vector3] = Field(
+        description="m, joint centres of a body that a camera sees, in the axes of the skeleton's room; else empty"
+    )
+    cameras: list[CameraStatus]
     cadence_per_min: float | None = Field(description="steps per minute while the rhythm is locked")

@@ -7,7 +7,7 @@ from pydantic import Field, model_validator
 
 from schemas.payload import Payload, Vector3
 from schemas.rhythm import KnownRhythm
-from schemas.vocabulary import Segment, Task
+from schemas.vocabulary import CameraKind, Segment, SkeletonJoint, Task
 
 
 class Placement(StrEnum):
@@ -47,6 +47,16 @@ class HubDescription(Payload):
 
     name: str
     sensors: list[SensorDescription]
+
+
+class CameraDescription(Payload):
+    """One depth camera; what it delivers is a stream of its own."""
+
+    name: str = Field(description="unique within the session, also among hubs")
+    kind: CameraKind
+    rate_hz: float = Field(gt=0, description="nominal frame rate, Hz")
+    joints: list[SkeletonJoint] = Field(description="those of every frame, in order; each at most once")
+    floor_m: float | None = Field(description="m, height of the floor; negative below the camera; null when unknown")
 
 
 class Anthropometry(Payload):
@@ -92,6 +102,7 @@ class SessionDescription(Payload):
     estimator: str = Field(description="a name of vocabulary.ESTIMATORS")
     walk_path: WalkPath = Field(description="turning: anywhere; straight: treadmill, in place, corridor without a turn")
     hubs: list[HubDescription]
+    cameras: list[CameraDescription]
     anthropometry: Anthropometry
     standing: list[StandingInterval]
     reference: list[ReferenceChannel]
@@ -104,8 +115,14 @@ class SessionDescription(Payload):
     @model_validator(mode="before")
     @classmethod
     def _of_an_older_writer(cls, fields: Any) -> Any:
-        """A session from before these fields existed knew no rhythm, was a walk, and anybody might turn."""
-        before: dict[str, Any] = {"known_rhythms": [], "walk_path": "turning", "task": Task.WALK, "walkway_m": None}
+        """A session from before these fields existed knew no rhythm nor camera, was a walk, and anybody might turn."""
+        before: dict[str, Any] = {
+            "known_rhythms": [],
+            "walk_path": "turning",
+            "task": Task.WALK,
+            "walkway_m": None,
+            "cameras": [],
+        }
         return {**before, **fields} if isinstance(fields, dict) else fields
 
     @model_validator(mode="after")

@@ -8,11 +8,12 @@ from schemas.checkpoint import Checkpoint
 from schemas.gait import GaitEvent, Stride
 from schemas.health import Gap, Health, Progress
 from schemas.imu import ImuBatch, ReferenceBatch
-from schemas.kinematics import Calibration, JointState, LivePose, SegmentMotion
+from schemas.kinematics import Calibration, JointCentres, JointState, LivePose, SegmentMotion
 from schemas.metrics import SessionMetrics
 from schemas.payload import Payload
 from schemas.rhythm import LearnedRhythm, Rhythm
 from schemas.session import SessionDescription
+from schemas.skeleton import SkeletonBatch
 from schemas.tasks import Repetition, TaskPhase
 
 
@@ -38,6 +39,15 @@ class Signal:
 
 
 IMU = Signal("imu", ImuBatch, "ingest", Quality.LOSSLESS, "raw", 100.0, "inertial samples of one hub")
+SKELETON = Signal(
+    "skeleton",
+    SkeletonBatch,
+    "ingest",
+    Quality.LOSSLESS,
+    "raw",
+    30.0,
+    "joints of a person as a camera sees them",
+)
 REFERENCE = Signal(
     "reference", ReferenceBatch, "ingest", Quality.LOSSLESS, "raw", 100.0, "truth that came with the samples"
 )
@@ -57,6 +67,10 @@ LEARNED_RHYTHM = Signal(
 SEGMENT_MOTION = Signal(
     "segment_motion", SegmentMotion, "estimation", Quality.LOSSLESS, "derived", 100.0, "acceleration and turning of "
     "segments whose lone sensor tells gait events",
+)  # fmt: skip
+JOINT_CENTRES = Signal(
+    "joint_centres", JointCentres, "estimation", Quality.LOSSLESS, "derived", 30.0, "joint centres in the room, of a "
+    "body that a camera sees",
 )  # fmt: skip
 LIVE_POSE = Signal("live_pose", LivePose, "estimation", Quality.LIVE, None, 25.0, "the skeleton on the screen")
 GAIT_EVENT = Signal(
@@ -80,7 +94,8 @@ CHECKPOINT = Signal(
 PROGRESS = Signal("progress", Progress, "every consumer", Quality.LIVE, None, 10.0, "how far a consumer has come")
 
 SIGNALS: tuple[Signal, ...] = (
-    IMU, REFERENCE, SESSION, CALIBRATION, JOINT_STATE, RHYTHM, LEARNED_RHYTHM, SEGMENT_MOTION, LIVE_POSE,
+    IMU, SKELETON, REFERENCE, SESSION, CALIBRATION, JOINT_STATE, RHYTHM, LEARNED_RHYTHM, SEGMENT_MOTION,
+    JOINT_CENTRES, LIVE_POSE,
     GAIT_EVENT, STRIDE, TASK_PHASE, REPETITION, METRICS, GAP, HEALTH, CHECKPOINT, PROGRESS,
 )  # fmt: skip
 BY_NAME: dict[str, Signal] = {signal.name: signal for signal in SIGNALS}

@@ -37,11 +37,11 @@ class TaskPhase(Payload):
 
 
 class Repetition(Payload):
-    """One repetition of an exercise of one joint: there and back."""
+    """One repetition of an exercise: there and back of the movement that is followed."""
 
-    degree_of_freedom: str
-    side: Side
-    index: int = Field(ge=0, description="count of this joint's repetitions since the session started")
+    degree_of_freedom: str = Field(description="what is followed: a degree of freedom, or one of vocabulary.MOVEMENTS")
+    side: Side | None = Field(description="null for a movement of both sides or of the trunk")
+    index: int = Field(ge=0, description="count of this movement's repetitions since the session started")
     start_ns: SessionTime
     turn_ns: SessionTime = Field(description="the angle farthest from both ends")
     end_ns: SessionTime
@@ -50,5 +50,15 @@ class Repetition(Payload):
     end_angle: float = Field(description="rad")
     angle_std: float = Field(ge=0, description="rad, mean standard deviation of the angle")
     largest_velocity: float = Field(ge=0, description="rad/s, either way")
+    hold_s: float | None = Field(ge=0, description="s at the turn, within 5 % of the range; null where not measured")
+    ranges: dict[str, float] = Field(
+        description="rad, largest minus smallest angle of every valid degree of freedom; empty where one alone is seen"
+    )
     valid: bool
     rejected_because: str | None = Field(description="why a repetition does not count in metrics")
+
+    @model_validator(mode="before")
+    @classmethod
+    def _of_an_older_writer(cls, fields: Any) -> Any:
+        """Earlier ones followed one knee and told nothing else of it."""
+        return {"hold_s": None, "ranges": {}, **fields} if isinstance(fields, dict) else fields

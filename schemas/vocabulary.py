@@ -47,6 +47,7 @@ class EventSource(StrEnum):
     SHANK = "shank"
     FOOT = "foot"
     LOWER_BACK = "lower_back"
+    CAMERA = "camera"
     NOTHING = "nothing"
 
 
@@ -56,6 +57,10 @@ class Task(StrEnum):
     WALK = "walk"
     TIMED_UP_AND_GO = "timed_up_and_go"
     KNEE_FLEXION = "knee_flexion"
+    SQUAT = "squat"
+    STEPPING = "stepping"
+    TRUNK_TILT_SAGITTAL = "trunk_tilt_sagittal"
+    TRUNK_TILT_FRONTAL = "trunk_tilt_frontal"
 
 
 class TaskPhaseKind(StrEnum):
@@ -95,6 +100,56 @@ class JointCentre(StrEnum):
     HIP_LEFT = "hip_left"
     KNEE_LEFT = "knee_left"
     ANKLE_LEFT = "ankle_left"
+
+
+class SkeletonJoint(StrEnum):
+    """Every joint that a depth camera may deliver: the centres that the body is fitted to, then the others.
+
+    What a camera calls otherwise is renamed in ingest; what it lacks of the centres is interpolated there.
+    """
+
+    SPINE_BASE = "spine_base"
+    SPINE_MID = "spine_mid"
+    SPINE_SHOULDER = "spine_shoulder"
+    SHOULDER_RIGHT = "shoulder_right"
+    ELBOW_RIGHT = "elbow_right"
+    WRIST_RIGHT = "wrist_right"
+    SHOULDER_LEFT = "shoulder_left"
+    ELBOW_LEFT = "elbow_left"
+    WRIST_LEFT = "wrist_left"
+    HIP_RIGHT = "hip_right"
+    KNEE_RIGHT = "knee_right"
+    ANKLE_RIGHT = "ankle_right"
+    HIP_LEFT = "hip_left"
+    KNEE_LEFT = "knee_left"
+    ANKLE_LEFT = "ankle_left"
+    FOOT_RIGHT = "foot_right"
+    FOOT_LEFT = "foot_left"
+    NECK = "neck"
+    HEAD = "head"
+    HAND_RIGHT = "hand_right"
+    HAND_LEFT = "hand_left"
+    HAND_TIP_RIGHT = "hand_tip_right"
+    HAND_TIP_LEFT = "hand_tip_left"
+    THUMB_RIGHT = "thumb_right"
+    THUMB_LEFT = "thumb_left"
+    SPINE_NAVEL = "spine_navel"
+    SPINE_CHEST = "spine_chest"
+    CLAVICLE_RIGHT = "clavicle_right"
+    CLAVICLE_LEFT = "clavicle_left"
+    NOSE = "nose"
+    EYE_RIGHT = "eye_right"
+    EYE_LEFT = "eye_left"
+    EAR_RIGHT = "ear_right"
+    EAR_LEFT = "ear_left"
+
+
+class CameraKind(StrEnum):
+    """Depth cameras by the skeleton they deliver."""
+
+    KINECT_V2 = "kinect_v2"
+    AZURE_KINECT = "azure_kinect"
+    OTHER = "other"
 
 
 class TrackingState(StrEnum):
@@ -191,7 +246,21 @@ Zero is upright, facing world x, arms hanging, collar bones level. Knees and elb
 same axis and sign in every model.
 """
 
-BODY_MODELS: dict[str, tuple[DegreeOfFreedom, ...]] = {"lower_body": LOWER_BODY, "whole_body": WHOLE_BODY}
+ANKLES: tuple[DegreeOfFreedom, ...] = tuple(
+    DegreeOfFreedom(f"ankle_dorsiflexion_{side}", RIGHT, "toes up") for side in (Side.RIGHT, Side.LEFT)
+)
+"""Told only while the foot is flat on the floor: no camera sees feet well enough."""
+
+MOVEMENTS: dict[str, str] = {
+    "squat_depth": "mean flexion of both knees",
+    "trunk_lean_forward": "inclination of the trunk in the sagittal plane of the pelvis, positive forward",
+    "trunk_lean_right": "inclination of the trunk in the frontal plane of the pelvis, positive to the right",
+    "hip_flexion_right": "flexion of the right hip",
+    "hip_flexion_left": "flexion of the left hip",
+}
+"""What repetitions of the whole body are counted on, by name; rad."""
+
+BODY_MODELS: dict[str, tuple[DegreeOfFreedom, ...]] = {"lower_body": LOWER_BODY, "whole_body": (*WHOLE_BODY, *ANKLES)}
 """Model name (as in a joint_state message) -> its degrees of freedom, in order."""
 
 LOWER_BODY_ESTIMATORS: dict[str, str] = {
@@ -211,5 +280,16 @@ KNEE_ESTIMATORS: dict[str, str] = {
 }
 """Estimators of single knees, each from a thigh and a shank sensor, by name: ours before the published one."""
 
-ESTIMATORS: dict[str, str] = LOWER_BODY_ESTIMATORS | KNEE_ESTIMATORS
+CAMERA_ESTIMATORS: dict[str, str] = {
+    "body_cekf": "whole body from a depth camera, within the limits of joints and bones",
+    "body_cekf_colombel": "as published: constraint and covariance as printed (Colombel eq. 1-5)",
+}
+"""Estimators of the whole body from a depth camera, by name: ours before the published one."""
+
+FUSION_ESTIMATORS: dict[str, str] = {
+    "fusion": "whole body from inertial sensors and a depth camera, either of which may be away for a while",
+}
+"""Estimators that need both an inertial sensor and a camera, by name."""
+
+ESTIMATORS: dict[str, str] = LOWER_BODY_ESTIMATORS | KNEE_ESTIMATORS | CAMERA_ESTIMATORS | FUSION_ESTIMATORS
 """All selectable estimators, by name."""

@@ -7,13 +7,12 @@ from pathlib import Path
 from schemas.checkpoint import StreamPosition
 from schemas.health import Progress, Reason, Rejection, SessionHealth
 from schemas.session import SessionDescription
-from schemas.signals import IMU, REFERENCE, SIGNALS, Quality
+from schemas.signals import SIGNALS, Quality
 from services.archive.writer import Durable, SessionWriter
 from services.bus.publisher import StreamPublisher
 from services.bus.receiver import StreamReceiver
 from services.flow.message import Stream
-
-REFERENCE_SOURCE = "reference"
+from services.flow.raw_streams import raw_streams
 
 
 class Phase(Enum):
@@ -27,16 +26,13 @@ class Phase(Enum):
 
 
 def expected_streams(description: SessionDescription) -> tuple[Stream, ...]:
-    """Every stream of the session that is archived: of its hubs, of its reference, and of the services."""
-    raw = [Stream(IMU, hub.name) for hub in description.hubs]
-    if description.reference:
-        raw.append(Stream(REFERENCE, REFERENCE_SOURCE))
+    """Every stream of the session that is archived: what its source delivers, and what the services compute."""
     computed = [
         Stream(signal, signal.producer)
         for signal in SIGNALS
         if signal.archived == "derived" and signal.quality is Quality.LOSSLESS
     ]
-    return (*raw, *computed)
+    return (*raw_streams(description), *computed)
 
 
 @dataclass

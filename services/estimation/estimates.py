@@ -2,22 +2,25 @@
 
 from schemas.kinematics import JointState
 from schemas.rhythm import Rhythm
-from schemas.signals import JOINT_STATE, RHYTHM
+from schemas.signals import JOINT_STATE, RHYTHM, SIGNALS
 from schemas.vocabulary import Segment
 from services.estimation.rows import MODEL, Row
 from services.flow.message import Output
 
+OUTPUTS = tuple(signal for signal in SIGNALS if signal.producer == "estimation")
+"""Of every node, also of one that never sends some of them: readers wait for the end of each stream."""
 
-def estimates(rows: list[Row], valid: list[bool], observed: list[Segment]) -> list[Output]:
+
+def estimates(rows: list[Row], valid: list[bool], observed: list[Segment], model: str = MODEL) -> list[Output]:
     """Joint states and rhythm: one message each for some rows."""
     newest_ns = rows[-1].captured_ns
-    joints = _joint_state(rows, valid, observed)
+    joints = _joint_state(rows, valid, observed, model)
     return [Output(JOINT_STATE, newest_ns, joints), Output(RHYTHM, newest_ns, _rhythm(rows))]
 
 
-def _joint_state(rows: list[Row], valid: list[bool], observed: list[Segment]) -> JointState:
+def _joint_state(rows: list[Row], valid: list[bool], observed: list[Segment], model: str) -> JointState:
     return JointState(
-        model=MODEL,
+        model=model,
         captured_ns=[row.captured_ns for row in rows],
         position=[row.position for row in rows],
         velocity=[row.velocity for row in rows],

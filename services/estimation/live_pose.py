@@ -61,6 +61,8 @@ def waiting_pose(captured_ns: int, phase: str, message: str, notice: str, status
         angles={},
         angles_std={},
         sensors=statuses,
+        centres={},
+        cameras=[],
         cadence_per_min=None,
     )
 
@@ -79,6 +81,8 @@ def estimated_pose(
         angles={name: row.position[i] for i, name in seen},
         angles_std={name: row.position_std[i] for i, name in seen},
         sensors=statuses,
+        centres={},
+        cameras=[],
         # Two steps a stride.
         cadence_per_min=row.rhythm.frequency / (2.0 * math.pi) * 120.0 if row.rhythm.locked else None,
     )

@@ -9,9 +9,10 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from schemas.imu import ImuBatch, StandingMark
+from schemas.imu import ImuBatch
 from schemas.payload import Payload
 from schemas.session import SensorDescription
+from schemas.standing import StandingMark
 from services.biomech.rotations import angle_between
 from services.estimation.alignment import Alignment
 from services.estimation.parameters import StandingParameters

@@ -3,8 +3,8 @@
 from schemas.session import SessionDescription
 from schemas.vocabulary import KNEE_ESTIMATORS
 from services.estimation.knee.node import KneeNode
-from services.estimation.knee.refusal import RefusingNode
 from services.estimation.lower_body.node import LowerBodyNode
+from services.estimation.refusal import RefusingNode
 from services.flow.node import Node
 
 

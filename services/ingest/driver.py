@@ -6,10 +6,7 @@ from typing import NamedTuple, Protocol
 from schemas.health import Rejection
 from schemas.payload import Payload
 from schemas.session import SessionDescription
-from schemas.signals import IMU, REFERENCE
 from services.flow.message import Stream
-
-REFERENCE_STREAM = Stream(REFERENCE, "reference")
 
 
 class SourceMessage(NamedTuple):
@@ -34,9 +31,3 @@ class Source(Protocol):
 
     def rejections(self) -> list[Rejection]:
         """What was left out so far, by subject and reason."""
-
-
-def streams_of(description: SessionDescription) -> list[Stream]:
-    """The streams that a source with this description delivers."""
-    streams = [Stream(IMU, hub.name) for hub in description.hubs]
-    return streams + ([REFERENCE_STREAM] if description.reference else [])

@@ -32,8 +32,9 @@ from schemas.imu import ImuBatch, ReferenceBatch
 from schemas.payload import Payload
 from schemas.session import SessionDescription
 from services.flow.message import DecodeError, Envelope, Stream, decode_payload
+from services.flow.raw_streams import raw_streams
 from services.flow.rejections import RejectionCounter
-from services.ingest.driver import SourceMessage, streams_of
+from services.ingest.driver import SourceMessage
 from services.ingest.errors import EmptyFile, MissingFile, UnreadableFile, place
 from services.ingest.identity import Identity
 
@@ -91,7 +92,7 @@ class McapRecording:
         if not all(_HUB_NAME.fullmatch(hub.name) for hub in found.hubs):
             raise UnreadableFile(f"{place(paths[0])}: a hub's name cannot stand in a key; this file was altered")
         self._recorded = found
-        if not any(self._contents.stored.get(stream.name) for stream in streams_of(found)):
+        if not any(self._contents.stored.get(stream.name) for stream in raw_streams(found)):
             raise EmptyFile(f"{place(paths[0])}: no samples in it; give the raw file of the recording")
 
     def describe(self) -> SessionDescription:
@@ -102,7 +103,7 @@ class McapRecording:
     def messages(self) -> Iterator[SourceMessage]:
         """As recorded: each stream by sequence number, the streams among each other by time of capture."""
         self._undelivered = RejectionCounter()
-        streams = [self._replay(stream) for stream in streams_of(self._recorded)]
+        streams = [self._replay(stream) for stream in raw_streams(self._recorded)]
         return heapq.merge(*streams, key=attrgetter("captured_ns"))
 
     def rejections(self) -> list[Rejection]:

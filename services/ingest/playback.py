@@ -7,14 +7,16 @@ from collections.abc import Iterator
 from concurrent.futures import Future, ThreadPoolExecutor
 
 from schemas.health import Progress, SessionHealth
-from schemas.imu import ImuBatch, StandingMark
+from schemas.imu import ImuBatch
 from schemas.session import SessionDescription
 from schemas.signals import session_token_key
+from schemas.standing import StandingMark
 from services.bus.connection import Bus
 from services.bus.logs import event
 from services.bus.publisher import StreamPublisher
+from services.flow.raw_streams import raw_streams
 from services.ingest.batching import Batcher, BatchGovernor
-from services.ingest.driver import Source, SourceMessage, streams_of
+from services.ingest.driver import Source, SourceMessage
 from services.ingest.orders import InvalidOrder, MarkOrder, StartOrder
 from services.ingest.pacing import AsFastAsFollowed, Pace, Readers, RealTime
 from services.ingest.parameters import PARAMETERS, IngestParameters
@@ -74,7 +76,7 @@ class Playback:
         parameters: IngestParameters = PARAMETERS,
     ) -> None:
         self.description = description
-        self.readers = Readers([stream.name for stream in streams_of(description)], parameters)
+        self.readers = Readers([stream.name for stream in raw_streams(description)], parameters)
         self.ended_at_s: float | None = None
         self._source = source
         self._parameters = parameters
@@ -86,7 +88,7 @@ class Playback:
         self._least_ticks = order.ticks
         self._batcher = Batcher(order.ticks)
         session = description.session
-        self._publishers = {stream: StreamPublisher(bus, session, stream) for stream in streams_of(description)}
+        self._publishers = {stream: StreamPublisher(bus, session, stream) for stream in raw_streams(description)}
         self._token = bus.declare_token(session_token_key(bus.settings.site, session))
         self._captured_ns = 0
         self._marks: list[StandingMark] = []

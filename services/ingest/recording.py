@@ -69,6 +69,7 @@ class Recording:
                 HubDescription(name=hub.name, sensors=[_described(manifest, sensor) for sensor in hub.sensor])
                 for hub in manifest.hub
             ],
+            cameras=[],
             anthropometry=manifest.anthropometry.described(),
             standing=[
                 StandingInterval(from_ns=round(span.from_s * 1e9), to_ns=round(span.to_s * 1e9))

@@ -8,10 +8,11 @@ from schemas.rhythm import KnownRhythm
 from schemas.session import WalkPath
 from schemas.vocabulary import Task
 from services.flow.message import Envelope, Message
+from services.flow.raw_streams import raw_streams
 from services.ingest.batching import Batcher
 from services.ingest.choices import AS_THE_SOURCE_SAYS, Choices
 from services.ingest.data import MANIFESTS, data_folders
-from services.ingest.driver import Source, SourceMessage, streams_of
+from services.ingest.driver import Source, SourceMessage
 from services.ingest.errors import SourceError, UnknownSource
 from services.ingest.identity import Identity
 from services.ingest.manifest import FILE_NAME
@@ -76,7 +77,7 @@ def open_chosen(spec: str, choices: Choices = AS_THE_SOURCE_SAYS, *, session: st
 
 def iter_messages(source: Source, ticks: int = 1) -> Iterator[Message]:
     """Every message of a source as live publishing sends it: numbered from zero, each stream closed at its end."""
-    sequences = dict.fromkeys(streams_of(source.describe()), 0)
+    sequences = dict.fromkeys(raw_streams(source.describe()), 0)
     last_ns = dict.fromkeys(sequences, 0)
     for stream, captured_ns, payload in in_batches(source.messages(), ticks):
         yield Message(stream, Envelope(0, sequences[stream], captured_ns), payload)

@@ -10,7 +10,8 @@ from numpy.typing import NDArray
 
 from schemas.imu import ImuBatch, ReferenceBatch
 from services.flow.message import Stream
-from services.ingest.driver import REFERENCE_STREAM, SourceMessage
+from services.flow.raw_streams import REFERENCE_STREAM
+from services.ingest.driver import SourceMessage
 
 Times = NDArray[np.int64]
 Values = NDArray[np.float64]

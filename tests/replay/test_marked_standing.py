@@ -3,8 +3,9 @@
 import numpy as np
 import pytest
 
-from schemas.imu import ImuBatch, StandingMark
+from schemas.imu import ImuBatch
 from schemas.kinematics import Calibration, JointState, LivePose
+from schemas.standing import StandingMark
 from schemas.vocabulary import LOWER_BODY
 from services.estimation.lower_body.node import LowerBodyNode
 from services.flow.message import Message, Output

@@ -16,7 +16,7 @@ from services.bus.router import open_router
 from services.bus.settings import BusSettings
 from services.cli import live
 from services.flow.message import encode_payload
-from services.ingest.driver import streams_of
+from services.flow.raw_streams import raw_streams
 from services.ingest.parameters import IngestParameters
 from services.ingest.service import IngestService
 from services.ingest.source import iter_messages, open_source
@@ -59,7 +59,7 @@ class Stage:
     def start(self, source=WALK, speed=None, session="s1", **more):
         answer = self.order("start", {"source": source, "speed": speed, "session": session, **more})
         if "error" not in answer:
-            for stream in streams_of(SessionDescription.model_validate(answer)):
+            for stream in raw_streams(SessionDescription.model_validate(answer)):
                 self.loop.post(lambda stream=stream: self.loop.receive(session, stream, None, self._take))
         return answer
 

@@ -55,7 +55,7 @@ def describe() -> SessionDescription:
     return SessionDescription(
         session="kam", title="Single treadmill steps", started_unix_ns=0, origin="recording", protocol="walking",
         task=Task.WALK, walkway_m=None, estimator="ekf", walk_path="turning",
-        hubs=[HubDescription(name="imu", sensors=sensors)], anthropometry=body,
+        hubs=[HubDescription(name="imu", sensors=sensors)], cameras=[], anthropometry=body,
         standing=[], reference=[], duration_s=None, known_rhythms=[],
     )  # fmt: skip
 

@@ -184,6 +184,7 @@ def describe(session: str) -> SessionDescription:
         estimator="ekf",
         walk_path="turning",
         hubs=[HubDescription(name="hub", sensors=[])],
+        cameras=[],
         anthropometry=body,
         standing=[],
         reference=[],

@@ -83,6 +83,8 @@ class FittedLegs:
             events_from=event_sources(frozenset(segment for leg in self._legs for segment in leg.worn.segments)),
             unused=self._unused,
             misplaced={leg.worn.side: leg.misplaced for leg in self._legs if leg.misplaced},
+            lengths={},
+            absolute=True,
         )
 
     def snapshot(self) -> State:

@@ -5,13 +5,13 @@ from collections.abc import Sequence
 import numpy as np
 
 from schemas.health import Reason, Rejection
-from schemas.imu import StandingMark
 from schemas.rhythm import LearnedRhythm
 from schemas.session import SessionDescription
-from schemas.signals import CALIBRATION, JOINT_STATE, LEARNED_RHYTHM, LIVE_POSE, RHYTHM, SEGMENT_MOTION, Signal
+from schemas.signals import CALIBRATION, LEARNED_RHYTHM, LIVE_POSE
+from schemas.standing import StandingMark
 from schemas.vocabulary import Segment
 from services.biomech.rhythm.trusted import TrustedRhythm
-from services.estimation.estimates import estimates
+from services.estimation.estimates import OUTPUTS, estimates
 from services.estimation.intake import Intake
 from services.estimation.knee.chain_of_angles import ChainOfAngles
 from services.estimation.knee.estimators import estimator_of
@@ -40,7 +40,7 @@ class KneeNode:
     samples were batched into messages. At least one leg must wear both sensors.
     """
 
-    outputs: tuple[Signal, ...] = (CALIBRATION, JOINT_STATE, RHYTHM, LEARNED_RHYTHM, SEGMENT_MOTION, LIVE_POSE)
+    outputs = OUTPUTS
 
     def __init__(self, description: SessionDescription, parameters: EstimationParameters | None = None) -> None:
         p = self._parameters = parameters or EstimationParameters()

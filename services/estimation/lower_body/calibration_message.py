@@ -39,6 +39,8 @@ def calibration_message(description: SessionDescription, intake: Intake, calibra
         events_from=event_sources(worn_segments(description.hubs)),
         unused=intake.unused,
         misplaced={},
+        lengths={},
+        absolute=True,
     )
 
 

@@ -8,14 +8,14 @@ import numpy as np
 from numpy.typing import NDArray
 
 from schemas.health import Rejection
-from schemas.imu import StandingMark
 from schemas.rhythm import LearnedRhythm
 from schemas.session import SessionDescription
-from schemas.signals import CALIBRATION, JOINT_STATE, LEARNED_RHYTHM, LIVE_POSE, RHYTHM, SEGMENT_MOTION, Signal
+from schemas.signals import CALIBRATION, LEARNED_RHYTHM, LIVE_POSE, SEGMENT_MOTION
+from schemas.standing import StandingMark
 from schemas.vocabulary import Segment
 from services.biomech.event_sources import lone_segments, worn_segments
 from services.biomech.lower_body import SEGMENTS
-from services.estimation.estimates import estimates
+from services.estimation.estimates import OUTPUTS, estimates
 from services.estimation.intake import Intake, used_by_lower_body
 from services.estimation.learning import RhythmLearning, start_rhythm
 from services.estimation.live_pose import Pace, estimated_pose, segment_pictures, waiting_pose
@@ -43,7 +43,7 @@ class LowerBodyNode:
     all at once when it stands. The numbers do not depend on how the samples were batched into messages.
     """
 
-    outputs: tuple[Signal, ...] = (CALIBRATION, JOINT_STATE, RHYTHM, LEARNED_RHYTHM, SEGMENT_MOTION, LIVE_POSE)
+    outputs = OUTPUTS
 
     def __init__(self, description: SessionDescription, parameters: EstimationParameters | None = None) -> None:
         self._description = description

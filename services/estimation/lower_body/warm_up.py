@@ -40,5 +40,6 @@ def _session(estimator: str, sensors: list[SensorDescription]) -> SessionDescrip
     return SessionDescription(
         session="warm-up", title="", started_unix_ns=0, origin="synthetic", protocol="", task=Task.WALK,
         walkway_m=None, estimator=estimator, walk_path="turning", hubs=[HubDescription(name="none", sensors=sensors)],
+        cameras=[],
         anthropometry=body, standing=[], reference=[], duration_s=None, known_rhythms=[],
     )  # fmt: skip

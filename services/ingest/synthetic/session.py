@@ -121,6 +121,7 @@ class SyntheticSession(ABC):
             estimator="knee_axis" if parameters.worn in (LEFT_LEG, RIGHT_LEG) else "rhythmic_ekf",
             walk_path="turning",
             hubs=[HubDescription(name=HUB, sensors=[mount.description for mount in self.mounts])],
+            cameras=[],
             anthropometry=Anthropometry(
                 height_m=None,
                 mass_kg=None,

@@ -103,6 +103,8 @@ class KneeWatch:
             end_angle=float(course.angle[shape.end]),
             angle_std=float(course.std[within].mean()),
             largest_velocity=float(abs(course.rate[within]).max()),
+            hold_s=None,
+            ranges={},
             valid=True,
             rejected_because=None,
         )

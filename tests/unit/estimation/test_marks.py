@@ -8,9 +8,10 @@ import numpy as np
 import pytest
 from numpy.typing import NDArray
 
-from schemas.imu import ImuBatch, StandingMark
+from schemas.imu import ImuBatch
 from schemas.session import Placement
 from schemas.signals import CALIBRATION
+from schemas.standing import StandingMark
 from schemas.vocabulary import Segment
 from services.biomech.lower_body import SEGMENTS, SensorMount
 from services.biomech.pinocchio_model import PinocchioBody

@@ -2,7 +2,8 @@
 
 import pytest
 
-from schemas.imu import ImuBatch, StandingMark
+from schemas.imu import ImuBatch
+from schemas.standing import StandingMark
 from services.archive.disk import Disk
 from services.archive.record import Record
 from services.archive.seal import seal

@@ -6,7 +6,7 @@ from dataclasses import replace
 import numpy as np
 from scipy.spatial.transform import Rotation
 
-from schemas.imu import ImuBatch, SensorSamples, StandingMark
+from schemas.imu import ImuBatch, SensorSamples
 from schemas.kinematics import Calibration, JointState, LivePose
 from schemas.session import (
     Anthropometry,
@@ -16,6 +16,7 @@ from schemas.session import (
     SessionDescription,
 )
 from schemas.signals import IMU
+from schemas.standing import StandingMark
 from schemas.vocabulary import LOWER_BODY, Segment, Side, Task
 from services.bench.knee.legs import LegRecording, Motion, Sensors, record, walking
 from services.estimation.knee.node import KneeNode

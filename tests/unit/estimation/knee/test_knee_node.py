@@ -13,9 +13,9 @@ from schemas.vocabulary import KNEE_ESTIMATORS, Segment, SensorState, Side
 from services.bench.knee.legs import cycling, seated_flexion, walking
 from services.biomech.rotations import angle_between, matrix_from_quaternion
 from services.estimation.knee.node import KneeNode
-from services.estimation.knee.refusal import RefusingNode
 from services.estimation.lower_body.node import LowerBodyNode
 from services.estimation.node import build
+from services.estimation.refusal import RefusingNode
 from tests.unit.estimation.knee import knee_legs as legs
 
 KNEE = "knee_flexion_left"

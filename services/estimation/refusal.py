@@ -1,32 +1,33 @@
-"""A session whose knee estimator cannot work with what is worn: the page says why, and nothing is estimated."""
+"""A session whose estimator cannot work with the sensors there are: the page says why, and nothing is estimated."""
 
 from schemas.health import Rejection
 from schemas.kinematics import LivePose
 from schemas.session import SessionDescription
-from schemas.signals import IMU, LIVE_POSE, SIGNALS, Signal
+from schemas.signals import LIVE_POSE
+from services.estimation.estimates import OUTPUTS
 from services.estimation.live_pose import waiting_pose
 from services.estimation.parameters import EstimationParameters
 from services.estimation.sensor_status import unused_statuses
 from services.flow.message import Message, Output, Stream
 from services.flow.node import State
+from services.flow.raw_streams import raw_streams
 
 
 class RefusingNode:
     """Says once in a while what must be changed."""
 
-    outputs: tuple[Signal, ...] = tuple(signal for signal in SIGNALS if signal.producer == "estimation")
-    """All, though it only shows pictures: readers wait for the end of each stream."""
+    outputs = OUTPUTS
 
     def __init__(self, description: SessionDescription, reason: str) -> None:
         self.reason = reason
-        self._streams = tuple(Stream(IMU, hub.name) for hub in description.hubs)
+        self._streams = tuple(raw_streams(description.model_copy(update={"reference": []})))
         self._names = [sensor.name for hub in description.hubs for sensor in hub.sensors]
         self._period_ns = round(1e9 / EstimationParameters().live_rate_hz)
         self._next_ns = 0
 
     @property
     def streams(self) -> tuple[Stream, ...]:
-        """One imu stream per hub."""
+        """What sensors and cameras deliver."""
         return self._streams
 
     def step(self, message: Message) -> list[Output]:
