@@ -62,6 +62,8 @@ class SummingNode:
 def _pose(captured_ns: int) -> LivePose:
     return LivePose(
         captured_ns=captured_ns, phase="estimating", message="", notice="", segments=[], angles={}, angles_std={},
+        centres={},
+        cameras=[],
         sensors=[], cadence_per_min=None,
     )  # fmt: skip
 

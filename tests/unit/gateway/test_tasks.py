@@ -33,7 +33,8 @@ def repetition_of(index: int, turn_angle: float = 1.9) -> Repetition:
     return Repetition(
         degree_of_freedom="knee_flexion_left", side=Side.LEFT, index=index, start_ns=round(start_s * 1e9),
         turn_ns=round((start_s + 1.1) * 1e9), end_ns=round((start_s + 2.4) * 1e9), start_angle=0.05,
-        turn_angle=turn_angle, end_angle=0.07, angle_std=0.02, largest_velocity=2.5, valid=True, rejected_because=None,
+        turn_angle=turn_angle, end_angle=0.07, angle_std=0.02, largest_velocity=2.5, hold_s=None,
+        ranges={}, valid=True, rejected_because=None,
     )  # fmt: skip
 
 

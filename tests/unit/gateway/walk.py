@@ -78,14 +78,15 @@ def pose_at(at_s: float, lost: str | None = None, phase: str = "estimating", mes
     ]
     return LivePose(
         captured_ns=round(at_s * 1e9), phase=phase, message=message, notice="", segments=segments, angles=angles,
-        angles_std=stds, sensors=sensors, cadence_per_min=109.0 if phase == "estimating" else None,
+        angles_std=stds, sensors=sensors, centres={}, cameras=[],
+        cadence_per_min=109.0 if phase == "estimating" else None,
     )  # fmt: skip
 
 
 def calibration_of(misplaced: dict[Side, list[Misplacement]]) -> Calibration:
     return Calibration(
         model="lower_body", estimator="rhythmic_ekf", method="standing", datum="quiet standing", quality=0.8,
-        sensors=[], events_from={}, unused={}, misplaced=misplaced,
+        sensors=[], events_from={}, unused={}, misplaced=misplaced, lengths={}, absolute=True,
     )  # fmt: skip
 
 
