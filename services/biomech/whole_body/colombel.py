@@ -15,6 +15,7 @@ from services.biomech.whole_body.parameters import ProcessNoise
 from services.biomech.whole_body.presets import PUBLISHED_VARIANCE
 from services.biomech.whole_body.start import Start
 from services.biomech.whole_body.textbook import measurement, process_noise, transition
+from services.flow.node import State, pack_array, unpack_array
 
 Array = NDArray[np.float64]
 
@@ -29,7 +30,7 @@ class ColombelCekf:
         variance: float = PUBLISHED_VARIANCE,
         model: WholeBodyModel = MODEL,
     ) -> None:
-        self.model, self.process, self.variance = model, process, variance
+        self.start, self.model, self.process, self.variance = start, model, process, variance
         n = SEEN + 2 * COORDINATES
         self.x, self.P = np.zeros(n), np.eye(n)
         self.x[:SEEN] = np.concatenate([start.q, start.lengths])
@@ -72,3 +73,26 @@ class ColombelCekf:
     def lengths(self) -> Array:
         """(12,) m."""
         return self.x[COORDINATES:SEEN]
+
+    def snapshot(self) -> State:
+        """Everything that changes, and the start, as JSON values; what is not finite stays so."""
+        return {"start": self.start.packed(), "x": pack_array(self.x), "P": pack_array(self.P)}
+
+    def restore(self, state: State) -> None:
+        """Go on from a snapshot of a filter with the same start, to the last bit.
+
+        Raises:
+            ValueError: the snapshot is from another start.
+        """
+        if state["start"] != self.start.packed():
+            raise ValueError("whole-body snapshot is from another start than this filter's")
+        self.x, self.P = unpack_array(state["x"]), unpack_array(state["P"])
+
+    @classmethod
+    def resumed(
+        cls, state: State, process: ProcessNoise, variance: float = PUBLISHED_VARIANCE, model: WholeBodyModel = MODEL
+    ) -> "ColombelCekf":
+        """The filter that a snapshot was taken of, given the same noise."""
+        ekf = cls(Start.unpacked(state["start"]), process, variance, model)
+        ekf.restore(state)
+        return ekf

@@ -35,6 +35,7 @@ from services.biomech.whole_body.parameters import (
     per_angle,
 )
 from services.biomech.whole_body.start import Start
+from services.flow.node import State, pack_array, unpack_array
 
 Array = NDArray[np.float64]
 
@@ -184,6 +185,40 @@ class WholeBodyEkf:
         kept = self.P[COORDINATES : self.velocity, COORDINATES : self.velocity].copy()
         self._start_covariance()
         self.P[COORDINATES : self.velocity, COORDINATES : self.velocity] = kept
+
+    def snapshot(self) -> State:
+        """Everything that changes, and the start, as JSON values; of the symmetric P the upper triangle."""
+        return {
+            "start": self.start.packed(),
+            "x": pack_array(self.x),
+            "P": pack_array(self.P[np.triu_indices(len(self.x))]),
+            "estimate": pack_array(self.estimate),
+            "in_view_s": self.in_view_s,
+        }
+
+    def restore(self, state: State) -> None:
+        """Go on from a snapshot of a filter with the same start and settings, to the last bit.
+
+        What is told of the last frame alone (`active`, `swapped`, `distances`, `evidence`) comes with the next one.
+
+        Raises:
+            ValueError: the snapshot is of a filter with other states, or from another start.
+        """
+        x, n = unpack_array(state["x"]), len(self.x)
+        if len(x) != n or state["start"] != self.start.packed():
+            raise ValueError(f"whole-body snapshot of {len(x)} states and its start, this filter has {n} and its own")
+        self.x[:], self.estimate[:] = x, unpack_array(state["estimate"])
+        upper = np.triu_indices(n)
+        self.P[upper] = unpack_array(state["P"])
+        self.P.T[upper] = self.P[upper]
+        self.in_view_s = float(state["in_view_s"])
+
+    @classmethod
+    def resumed(cls, state: State, settings: FilterSettings = OURS, model: WholeBodyModel = MODEL) -> "WholeBodyEkf":
+        """The filter that a snapshot was taken of, given the same settings."""
+        ekf = cls(Start.unpacked(state["start"]), settings, model)
+        ekf.restore(state)
+        return ekf
 
     def is_sound(self) -> bool:
         """Finite throughout."""

@@ -4,6 +4,7 @@ Constant biases of the centres can be told from the posture only where the postu
 start that is not standing has none, and its absolute angles carry the camera's offsets.
 """
 
+from dataclasses import asdict
 from math import radians
 from typing import NamedTuple
 
@@ -22,6 +23,7 @@ from services.biomech.whole_body.parameters import (
     lengths_of,
     per_angle,
 )
+from services.flow.node import State, pack_array, unpack_array
 
 Array = NDArray[np.float64]
 States = NDArray[np.int64]
@@ -51,6 +53,29 @@ class Start(NamedTuple):
     def standing(self) -> bool:
         """Whether the posture was known, so that absolute angles are free of the camera's offsets."""
         return self.bias_std is not None
+
+    def packed(self) -> State:
+        """As JSON values, to the bit."""
+        arrays = self.q, self.q_std, self.lengths, self.length_covariance
+        return {
+            "arrays": [pack_array(array) for array in arrays],
+            "bias_std": None if self.bias_std is None else list(self.bias_std),
+            "noise": asdict(self.noise) | {"bias_std": list(self.noise.bias_std)},
+        }
+
+    @classmethod
+    def unpacked(cls, state: State) -> "Start":
+        """Inverse of `packed`."""
+        noise = dict(state["noise"])
+        noise["bias_std"] = _triple(noise["bias_std"])
+        bias_std = None if state["bias_std"] is None else _triple(state["bias_std"])
+        q, q_std, lengths, covariance = (unpack_array(packed) for packed in state["arrays"])
+        return cls(q, q_std, lengths, covariance, bias_std, StartNoise(**noise))
+
+
+def _triple(values: list[float]) -> tuple[float, float, float]:
+    depth, height, sideways = values
+    return depth, height, sideways
 
 
 def median_centres(centres: Array, state: States) -> Array:
