@@ -16,7 +16,10 @@ class RepairTimes:
     hole: float = 0.3
     """The substrate's own recovery takes a round trip; what it has not filled by now, it will not."""
     give_up: float = 5.0
-    """A producer that restarts, or a router, is back within this time."""
+    """A producer that still speaks, but does not answer for a hole, has not got it."""
+    absent: float = 60.0
+    """One that is silent too may be starting anew, on a busy machine for long; it will fill the hole itself. To wait
+    costs nothing: what comes behind the hole has come already."""
     silence: float = 2.0
     """A stream's last messages leave no hole when they are lost, so silence is questioned; ever more rarely."""
     longest_silence: float = 30.0
@@ -44,6 +47,7 @@ class Repair(Generic[Item]):
         self._hurry = True
         self._newest = Place(-1, -1)
         self._heard_at = now
+        self._speaks_since = now
         self._silence = times.silence
         self._hole: Hole | None = None
         self._hole_since = now
@@ -51,6 +55,8 @@ class Repair(Generic[Item]):
 
     def heard(self, now: float) -> None:
         """A live message of the stream came."""
+        if self._is_absent(now):
+            self._speaks_since = now
         self._heard_at = now
         self._silence = self._times.silence
 
@@ -113,9 +119,12 @@ class Repair(Generic[Item]):
         oldest = min((extent.oldest for extent in extents), default=None)
         if oldest is not None and oldest > Place(hole.epoch, hole.first):
             return self._inbox.give_up(oldest.sequence - 1 if oldest.epoch == hole.epoch else None)
-        if self._hole_questions >= 2 and now - self._hole_since >= self._times.give_up:
-            return self._inbox.give_up()
-        return []
+        since = max(self._hole_since, self._speaks_since)
+        patience = self._times.absent if self._is_absent(now) else self._times.give_up
+        return self._inbox.give_up() if self._hole_questions >= 2 and now - since >= patience else []
+
+    def _is_absent(self, now: float) -> bool:
+        return now - self._heard_at >= self._times.silence
 
     def _everything_after(self) -> Question:
         position = self._inbox.position

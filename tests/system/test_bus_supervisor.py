@@ -69,7 +69,7 @@ def test_children_come_back_and_stop_in_order():
 def test_a_signal_stops_everything(number: signal.Signals):
     stack, pids = start_stack("metrics")
     stack.send_signal(number)
-    out, _ = stack.communicate(timeout=15)
+    out, _ = stack.communicate(timeout=60)
     # The children's last words are passed on by threads and may come after it.
     assert "stopped" in out.splitlines()
     assert stack.returncode == 0
@@ -79,7 +79,7 @@ def test_a_signal_stops_everything(number: signal.Signals):
 def test_children_do_not_outlive_a_supervisor_that_was_killed():
     stack, pids = start_stack("metrics")
     stack.kill()
-    stack.communicate(timeout=15)
+    stack.communicate(timeout=60)
     wait_until(lambda: not any(is_running(pid) for pid in pids))
 
 

@@ -119,15 +119,42 @@ def test_what_the_ring_no_longer_has_is_given_up_at_once():
     assert consumer.inbox.counts.lost == 149
 
 
-def test_what_nobody_answers_for_is_given_up_after_a_while():
+def test_what_a_speaking_producer_does_not_answer_for_is_given_up_after_a_while():
+    consumer = Consumer()
+    consumer.wait(0.4, nobody)
+    for number in range(3, 8):
+        consumer.hear([Envelope(0, number, number)])
+        assert consumer.out == []
+        consumer.wait(DEFAULT_TIMES.give_up / 5 - STEP_S, nobody)
+    assert consumer.out == []
+    consumer.hear([Envelope(0, 8, 8)])
+    consumer.wait(1.5, nobody)
+    assert consumer.out == [3, 4, 5, 6, 7, 8]
+    assert consumer.inbox.counts.lost == 3
+
+
+def test_what_an_absent_producer_left_open_is_given_up_much_later():
     consumer = Consumer()
     consumer.wait(0.4, nobody)
     consumer.hear([Envelope(0, 3, 3)])
-    consumer.wait(DEFAULT_TIMES.give_up - 0.5, nobody)
+    consumer.wait(DEFAULT_TIMES.absent - 0.5, nobody)
     assert consumer.out == []
     consumer.wait(1.5, nobody)
     assert consumer.out == [3]
-    assert consumer.inbox.counts.lost == 3
+
+
+def test_a_producer_that_starts_anew_for_long_fills_its_own_hole():
+    producer, consumer = Producer(), Consumer()
+    consumer.wait(0.4, nobody)
+    early = producer.send(5)
+    consumer.hear(early[:2] + early[3:])
+    consumer.wait(3 * DEFAULT_TIMES.give_up, nobody)
+    # Back, it computes again from before the hole; its first answers are lost.
+    consumer.hear(producer.send(1))
+    consumer.wait(DEFAULT_TIMES.give_up - 1.0, nobody)
+    consumer.wait(1.0, ring_of(producer))
+    assert consumer.out == list(range(6))
+    assert consumer.inbox.counts.lost == 0
 
 
 def test_a_process_that_was_frozen_asks_before_it_gives_up():
