@@ -5,7 +5,7 @@ from typing import Literal, Protocol
 
 from schemas.rhythm import KnownRhythm
 from schemas.session import SessionDescription, WalkPath
-from schemas.vocabulary import Task
+from schemas.vocabulary import CAMERA_ESTIMATORS, FUSION_ESTIMATORS, KNEE_ESTIMATORS, Task
 
 
 class ControlUnavailable(RuntimeError):
@@ -33,8 +33,18 @@ class StartRequest:
     walkway_m: float | None
 
 
-Worn = Literal["lower_body", "knee"]
-"""What the sensors of a source are strapped to: pelvis and both legs, or the thigh and shank of one leg."""
+Worn = Literal["lower_body", "knee", "camera", "camera_and_sensors"]
+"""What measures the person: sensors on pelvis and both legs, on the thigh and shank of one leg, nothing that is worn
+but a depth camera, or sensors and a camera at once."""
+
+
+def worn_by(estimator: str) -> Worn:
+    """What an estimator is made for, by its name."""
+    if estimator in FUSION_ESTIMATORS:
+        return "camera_and_sensors"
+    if estimator in CAMERA_ESTIMATORS:
+        return "camera"
+    return "knee" if estimator in KNEE_ESTIMATORS else "lower_body"
 
 
 @dataclass(frozen=True, slots=True)

@@ -253,6 +253,7 @@ class LiveHub:
             "phase": None if pose is None else pose.phase,
             "message": None if pose is None else pose.message,
             "sensors": [] if pose is None else views.sensor_views(pose),
+            "cameras": [] if pose is None else views.camera_views(pose),
             "cadence_per_min": None if pose is None else pose.cadence_per_min,
             "strides": sum(view["index"] + 1 for view in live.memory.of("stride")),
             "repetitions": sum(view["index"] + 1 for view in live.memory.of("repetition")),

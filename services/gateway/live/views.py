@@ -43,6 +43,10 @@ def session_view(description: SessionDescription, patient: str | None) -> View:
             for hub in description.hubs
             for sensor in hub.sensors
         ],
+        "cameras": [
+            {"name": camera.name, "kind": camera.kind.value, "rate_hz": camera.rate_hz, "floor_m": camera.floor_m}
+            for camera in description.cameras
+        ],
         "body": {
             "thigh_length_m": body.thigh_length_m,
             "shank_length_m": body.shank_length_m,
@@ -75,6 +79,8 @@ def pose_view(poses: list[LivePose], age_s: float) -> View:
         **_angles_view(pose),
         "trail": [{"at_s": seconds(each.captured_ns), **_angles_view(each)} for each in poses[:-1]],
         "sensors": sensor_views(pose),
+        "centres": {centre.value: _rounded(position) for centre, position in pose.centres.items()},
+        "cameras": camera_views(pose),
         "cadence_per_min": pose.cadence_per_min,
     }
 
@@ -90,6 +96,14 @@ def sensor_views(pose: LivePose) -> list[View]:
     """State of each sensor."""
     return [
         {"sensor": each.sensor, "state": each.state.value, "since_s": seconds(each.since_ns)} for each in pose.sensors
+    ]
+
+
+def camera_views(pose: LivePose) -> list[View]:
+    """State of each camera, and how many people it sees."""
+    return [
+        {"camera": each.camera, "state": each.state.value, "people": each.people, "since_s": seconds(each.since_ns)}
+        for each in pose.cameras
     ]
 
 
@@ -126,12 +140,14 @@ def stride_view(stride: Stride) -> View:
 
 
 def calibration_view(calibration: Calibration) -> View:
-    """What zero means, and what is worn otherwise than declared."""
+    """What zero means, what is worn otherwise than declared, and how long segments were found to be."""
     return {
         "kind": "calibration",
         "datum": calibration.datum,
         "quality": calibration.quality,
         "misplaced": calibration.model_dump(mode="json", include={"misplaced"})["misplaced"],
+        "absolute": calibration.absolute,
+        "lengths": {name: round(length, 4) for name, length in calibration.lengths.items()},
     }
 
 
@@ -163,6 +179,8 @@ def repetition_view(repetition: Repetition) -> View:
         "turn_angle": repetition.turn_angle,
         "end_angle": repetition.end_angle,
         "angle_std": repetition.angle_std,
+        "hold_s": repetition.hold_s,
+        "ranges": {name: round(value, 5) for name, value in repetition.ranges.items()},
         "valid": repetition.valid,
         "rejected_because": repetition.rejected_because,
     }

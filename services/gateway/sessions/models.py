@@ -135,6 +135,14 @@ class SessionOut(BaseModel):
     misplaced: dict[Side, list[Misplacement]] = Field(
         description="legs whose sensors are worn otherwise than declared", examples=[{"left": ["swapped"]}]
     )
+    absolute: bool | None = Field(
+        description="whether angles refer to a known posture; if not, each carries an unknown constant offset; null"
+        " before the calibration",
+        examples=[True],
+    )
+    lengths: dict[str, float] = Field(
+        description="m, of segments as estimated; empty where none is", examples=[{"thigh_left": 0.42}]
+    )
     highlights: Highlights | None = Field(description="null before the first metrics")
 
 
@@ -237,8 +245,8 @@ class RepetitionOut(BaseModel):
 
     model_config = ConfigDict(extra="forbid")
 
-    degree_of_freedom: str = Field(examples=["knee_flexion_left"])
-    side: Side = Field(examples=["left"])
+    degree_of_freedom: str = Field(description="what is followed", examples=["knee_flexion_left"])
+    side: Side | None = Field(description="null for a movement of both sides or of the trunk", examples=["left"])
     index: int = Field(ge=0, description="number of this joint's repetitions before it", examples=[3])
     start_s: float = Field(ge=0, description="s of session time", examples=[12.1])
     turn_s: float = Field(ge=0, description="s of session time: the angle farthest from both ends", examples=[13.3])
@@ -248,6 +256,11 @@ class RepetitionOut(BaseModel):
     end_angle: float = Field(description="rad", examples=[0.07])
     angle_std: float = Field(ge=0, description="rad, mean standard deviation of the angle", examples=[0.02])
     largest_velocity: float = Field(ge=0, description="rad/s, either way", examples=[2.4])
+    hold_s: float | None = Field(ge=0, description="s at the turn; null where not measured", examples=[0.8])
+    ranges: dict[str, float] = Field(
+        description="rad, largest minus smallest, of every angle that is seen; empty where one alone is",
+        examples=[{"knee_flexion_left": 1.61, "knee_flexion_right": 1.58}],
+    )
     valid: bool
     rejected_because: str | None = Field(description="why it does not count in metrics", examples=[None])
 

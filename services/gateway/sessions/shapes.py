@@ -41,6 +41,8 @@ def session_out(row: SessionRow) -> SessionOut:
         walkway_m=row.walkway_m,
         datum=None if calibration is None else calibration.datum,
         misplaced={} if calibration is None else calibration.misplaced,
+        absolute=None if calibration is None else calibration.absolute,
+        lengths={} if calibration is None else calibration.lengths,
         highlights=_highlights(row),
     )
 

@@ -5,9 +5,9 @@ from typing import Literal
 from fastapi import APIRouter
 from pydantic import BaseModel, ConfigDict, Field
 
-from schemas.vocabulary import KNEE_ESTIMATORS, Task
+from schemas.vocabulary import Task
 from services.gateway.context import Context
-from services.gateway.control import SYNTHETIC_SOURCES, ControlUnavailable, Worn
+from services.gateway.control import SYNTHETIC_SOURCES, ControlUnavailable, Worn, worn_by
 from services.gateway.problems import documented
 from services.gateway.sessions.records import DEFAULT_ESTIMATOR, known_estimators
 
@@ -23,7 +23,7 @@ class SourceOut(BaseModel):
     title: str = Field(examples=["Walk, comfortable speed"])
     kind: Literal["recording", "synthetic"]
     duration_s: float | None = Field(description="s; null when unknown", examples=[120.0])
-    worn: Worn | None = Field(description="where its sensors are; null when unknown", examples=["lower_body"])
+    worn: Worn | None = Field(description="what measures the person; null when unknown", examples=["lower_body"])
     task: Task | None = Field(description="what the person does; null when unknown", examples=["walk"])
 
 
@@ -34,7 +34,7 @@ class EstimatorOut(BaseModel):
 
     name: str = Field(examples=["rhythmic_ekf"])
     meaning: str = Field(examples=["EKF with the jerk of a rhythm model"])
-    default: bool = Field(description="of a whole lower body; a single knee has a default of its own")
+    default: bool = Field(description="of a whole lower body; the others have defaults of their own")
     worn: Worn = Field(description="what it is made for", examples=["lower_body"])
 
 
@@ -71,7 +71,7 @@ def list_sources(gateway: Context) -> SourcesOut:
             name=name,
             meaning=meaning,
             default=name == DEFAULT_ESTIMATOR,
-            worn="knee" if name in KNEE_ESTIMATORS else "lower_body",
+            worn=worn_by(name),
         )
         for name, meaning in known_estimators().items()
     ]
