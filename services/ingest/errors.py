@@ -51,6 +51,10 @@ class WrongUnits(SourceError):
     """Samples that cannot be in the unit that was declared."""
 
 
+class WrongAxes(SourceError):
+    """A camera that cannot look into the room as was declared."""
+
+
 class ClockError(SourceError):
     """Time stamps that do not advance."""
 
