@@ -6,9 +6,8 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.typing import NDArray
 
-from services.bench.kinect.camera import Seen, offset_std
-from services.bench.kinect.motions import RATE_HZ, Trial
-from services.bench.kinect.people import Person
+from services.bench.kinect.camera import offset_std
+from services.bench.kinect.motions import Trial
 from services.biomech.whole_body.colombel import ColombelCekf
 from services.biomech.whole_body.constrained_ekf import OURS, FilterSettings
 from services.biomech.whole_body.kernels.tables import COORDINATES, LENGTHS
@@ -16,6 +15,9 @@ from services.biomech.whole_body.multibody_kinematics import fit_frame, fit_reco
 from services.biomech.whole_body.parameters import START_NOISE, ProcessNoise, StartNoise
 from services.biomech.whole_body.start import Start, fitted_start, standing_start
 from services.biomech.whole_body.tuning import Recording, replay
+from services.ingest.synthetic.whole_body.camera import Seen
+from services.ingest.synthetic.whole_body.people import Person
+from services.ingest.synthetic.whole_body.programme import RATE_HZ
 
 Array = NDArray[np.float64]
 

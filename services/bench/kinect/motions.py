@@ -4,26 +4,25 @@ Squats are the five recorded ones of OpenCap; arms, steps and tilts are shaped. 
 trunk also bends aside and twists, which no method under test knows of.
 """
 
-from functools import cache
+from functools import cache, partial
 from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 from scipy.ndimage import uniform_filter1d
-from scipy.signal import butter, filtfilt
 
-from services.bench.kinect.people import Person
-from services.biomech.whole_body.model import CENTRE_NAMES, DOF, WholeBodyModel
+from services.biomech.whole_body.model import CENTRE_NAMES, WholeBodyModel
 from services.biomech.whole_body.pinocchio_whole_body import PinocchioWholeBody
 from services.ingest.data import find_data
+from services.ingest.synthetic.whole_body.manners import MANNERS, SQUAT, STEPS, Manner, squat
+from services.ingest.synthetic.whole_body.people import Person
+from services.ingest.synthetic.whole_body.programme import perform, slow_noise
+from services.ingest.synthetic.whole_body.progress import Progress
 
 Array = NDArray[np.float64]
 
-RATE_HZ = 30.0
 TASKS = (1, 2, 3, 4)
 TASK_NAMES = {1: "squat with arms", 2: "steps", 3: "tilt forward", 4: "tilt aside"}
-REPETITIONS = 10
-REST_S = 3.0
 SQUAT_EDGES = (10, 163, 308, 467, 627, 800)
 """Frames at which the recorded squats begin and end."""
 DRIFT_DEG = 2.0
@@ -61,120 +60,29 @@ SQUAT_COLUMNS = {
 """Angle -> column of OpenSim and sign: its tilt and lumbar extension are positive backward, its list to the right."""
 
 
+def recorded_squat(rng: np.random.Generator, progress: Progress) -> dict[str, Array]:
+    """One of the five, its ends brought to zero. Raises MissingFile without the recording."""
+    frames, which = len(progress.whole), rng.integers(0, 5)
+    part = slice(SQUAT_EDGES[which], SQUAT_EDGES[which + 1])
+    found = {}
+    for name, (column, sign) in SQUAT_COLUMNS.items():
+        values = _resampled(_recorded_squats()[column][part], frames)
+        found[name] = sign * (values - np.linspace(values[0], values[-1], frames))
+    return found
+
+
 def _resampled(values: Array, frames: int) -> Array:
     return np.interp(np.linspace(0.0, len(values) - 1.0, frames), np.arange(len(values)), values)
 
 
-def _bump(frames: int, power: float) -> Array:
-    return np.asarray(np.sin(np.pi * np.linspace(0.0, 1.0, frames)) ** power)
-
-
-def _squat(who: Person, rng: np.random.Generator, amplitude: float) -> Array:
-    frames = _frames(who, rng, 2.6)
-    which = rng.integers(0, 5)
-    part = slice(SQUAT_EDGES[which], SQUAT_EDGES[which + 1])
-    angles = np.zeros((frames, len(DOF)))
-    for name, (column, sign) in SQUAT_COLUMNS.items():
-        values = _resampled(_recorded_squats()[column][part], frames)
-        moved = values - np.linspace(values[0], values[-1], frames)
-        angles[:, DOF[name]] = sign * amplitude * moved * (who.trunk_share if name == "trunk_flexion" else 1.0)
-    depth = angles[:, DOF["knee_flexion_right"]]
-    depth = np.clip(depth / depth.max(), 0.0, 1.0)
-    for side in ("right", "left"):
-        raised = np.clip(depth * (1.0 + 0.05 * rng.normal()), 0.0, 1.1)
-        angles[:, DOF[f"clavicle_elevation_{side}"]] = (8.0 + 4.0 * rng.normal()) * raised
-        angles[:, DOF[f"shoulder_flexion_{side}"]] = 0.15 * who.abduction_deg * raised
-        angles[:, DOF[f"shoulder_adduction_{side}"]] = -(who.abduction_deg - 10.0) * raised
-        angles[:, DOF[f"shoulder_internal_rotation_{side}"]] = (18.0 + 6.0 * rng.normal()) * raised
-        angles[:, DOF[f"elbow_flexion_{side}"]] = (8.0 + 4.0 * rng.normal()) * raised
-    return angles
-
-
-def _steps(who: Person, rng: np.random.Generator, amplitude: float) -> Array:
-    frames = _frames(who, rng, 1.35)
-    angles, half = np.zeros((frames, len(DOF))), frames // 2
-    for side, other, first in (("right", "left", 0), ("left", "right", half)):
-        part, lift = slice(first, first + half), _bump(half, 1.6)
-        angles[part, DOF[f"hip_flexion_{side}"]] += (48.0 + 4.0 * rng.normal()) * amplitude * lift
-        angles[part, DOF[f"knee_flexion_{side}"]] += (62.0 + 5.0 * rng.normal()) * amplitude * _bump(half, 1.4)
-        angles[part, DOF[f"hip_adduction_{side}"]] -= (5.0 + 2.0 * rng.normal()) * lift
-        angles[part, DOF[f"hip_internal_rotation_{side}"]] += (6.0 + 5.0 * rng.normal()) * lift
-        angles[part, DOF[f"hip_adduction_{other}"]] += 3.0 * lift
-    swing = np.sin(np.linspace(0.0, 2.0 * np.pi, frames)) * amplitude
-    angles[:, DOF["pelvis_obliquity"]] -= 3.0 * swing
-    angles[:, DOF["pelvis_rotation"]] += 4.0 * swing
-    angles[:, DOF["pelvis_tilt"]] += 2.0 * np.abs(swing)
-    angles[:, DOF["shoulder_flexion_right"]] -= 15.0 * swing
-    angles[:, DOF["shoulder_flexion_left"]] += 15.0 * swing
-    return angles
-
-
-def _tilt_forward(who: Person, rng: np.random.Generator, amplitude: float) -> Array:
-    frames = _frames(who, rng, 3.4)
-    angles, bow, bend = np.zeros((frames, len(DOF))), _bump(frames, 1.8), 50.0 * amplitude
-    angles[:, DOF["pelvis_tilt"]] = 0.6 * bend * bow
-    angles[:, DOF["trunk_flexion"]] = 0.4 * bend * bow
-    for side in ("right", "left"):
-        angles[:, DOF[f"hip_flexion_{side}"]] = (0.6 * bend - 4.0) * bow
-        angles[:, DOF[f"knee_flexion_{side}"]] = (4.0 + 2.0 * rng.normal()) * bow
-        angles[:, DOF[f"hip_adduction_{side}"]] = (2.0 + 1.5 * rng.normal()) * bow
-        angles[:, DOF[f"hip_internal_rotation_{side}"]] = 2.0 * rng.normal() * bow
-        angles[:, DOF[f"shoulder_flexion_{side}"]] = 0.75 * bend * bow
-    return angles
-
-
-def _tilt_aside(who: Person, rng: np.random.Generator, amplitude: float) -> Array:
-    frames = _frames(who, rng, 3.6)
-    angles, lean = np.zeros((frames, len(DOF))), 16.0 * amplitude
-    sway = np.sin(np.linspace(0.0, 2.0 * np.pi, frames)) * np.hanning(frames) ** 0.15
-    angles[:, DOF["pelvis_obliquity"]] = -lean * sway
-    angles[:, DOF["hip_adduction_right"]] = 0.95 * lean * sway
-    angles[:, DOF["hip_adduction_left"]] = -0.95 * lean * sway
-    angles[:, DOF["trunk_flexion"]] = 7.0 * amplitude * np.abs(sway)
-    angles[:, DOF["pelvis_tilt"]] = 3.0 * amplitude * np.abs(sway)
-    for side, sign in (("right", -1.0), ("left", 1.0)):
-        angles[:, DOF[f"hip_flexion_{side}"]] = 4.0 * amplitude * np.abs(sway)
-        angles[:, DOF[f"shoulder_adduction_{side}"]] = sign * 0.3 * lean * sway
-    return angles
-
-
-def _frames(who: Person, rng: np.random.Generator, seconds: float) -> int:
-    return int(RATE_HZ * seconds * who.tempo * (1.0 + 0.06 * rng.normal()))
-
-
-def slow_noise(rng: np.random.Generator, frames: int, columns: int, cutoff_hz: float = 0.4) -> Array:
-    """(frames, columns) of unit variance below a frequency."""
-    edge = 300
-    white = rng.normal(size=(frames + 2 * edge, columns))
-    low = filtfilt(*butter(2, cutoff_hz / (RATE_HZ / 2.0)), white, axis=0)[edge:-edge]
-    return np.asarray(low / low.std(axis=0))
-
-
-MANNERS = {1: _squat, 2: _steps, 3: _tilt_forward, 4: _tilt_aside}
-
-
-def angles_of(who: Person, task: int, rng: np.random.Generator) -> Array:
-    """(n, 22) rad: a rest of 3 s, then ten repetitions with short pauses, and natural drift throughout."""
-    still = np.zeros((1, len(DOF)))
-    parts = [np.repeat(still, int(REST_S * RATE_HZ), axis=0)]
-    for _ in range(REPETITIONS):
-        parts.append(MANNERS[task](who, rng, who.amplitude * (1.0 + 0.05 * rng.normal())))
-        pause = 0.1 if task == 2 else rng.uniform(0.2, 0.8)
-        parts.append(np.repeat(still, int(RATE_HZ * pause), axis=0))
-    angles = who.rest_deg + np.concatenate([*parts, np.repeat(still, int(RATE_HZ), axis=0)])
-    angles = uniform_filter1d(angles, 5, axis=0, mode="nearest")
-    sway = np.array([0.8 if name.startswith(("pelvis", "hip", "clavicle")) else 1.2 for name in DOF])
-    sway[[i for i, name in enumerate(DOF) if "shoulder_internal" in name]] = 2.0
-    angles += slow_noise(rng, len(angles), len(DOF)) * sway
-    hinges = [i for i, name in enumerate(DOF) if name.startswith(("knee", "elbow"))]
-    angles[:, hinges] = np.maximum(angles[:, hinges], 0.3)
-    return np.asarray(np.radians(angles))
+RECORDED: dict[int, Manner] = {**MANNERS, SQUAT: partial(squat, recorded_squat)}
+"""Manners of the tasks, squats as recorded."""
 
 
 def trial(who: Person, task: int) -> Trial:
     """A person's trial, always the same. Raises MissingFile without the recorded squats."""
     rng = np.random.default_rng([who.number, task, 7])
-    angles = angles_of(who, task, rng)
+    angles = perform(who, task, rng, manners=RECORDED).angles
     n = len(angles)
     bends = np.radians(DRIFT_DEG * slow_noise(rng, n, 2, 0.3))
     body = PinocchioWholeBody(WholeBodyModel(who.trunk_joint), who.lengths, supple=True)
@@ -192,7 +100,7 @@ def trial(who: Person, task: int) -> Trial:
 def _feet(centres: Array, task: int) -> Array:
     """(n, 3) the point that stays on its place: the middle of the ankles, in steps the lower one's track."""
     right, left = (centres[:, CENTRE_NAMES.index(name)] for name in ("ankle_right", "ankle_left"))
-    if task != 2:
+    if task != STEPS:
         return np.asarray((right + left) / 2.0)
     higher = np.clip((right[:, 1] - left[:, 1]) / 0.02, -30.0, 30.0)
     share = uniform_filter1d(1.0 / (1.0 + np.exp(higher)), 5)[:, None]

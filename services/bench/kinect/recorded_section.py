@@ -5,7 +5,6 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.typing import NDArray
 
-from services.bench.kinect.camera import Seen
 from services.bench.kinect.recordings import RATE_HZ, keraal, kimore
 from services.bench.scoreboard import Row, at_least, at_most, informative
 from services.biomech.whole_body.colombel import ColombelCekf
@@ -23,6 +22,7 @@ from services.biomech.whole_body.start import (
     median_centres,
     standing_start,
 )
+from services.ingest.synthetic.whole_body.camera import Seen
 
 Array = NDArray[np.float64]
 

@@ -7,10 +7,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from schemas.vocabulary import JointCentre
-from services.bench.kinect.camera import Seen
 from services.biomech.whole_body.model import CENTRE_NAMES
 from services.ingest.data import find_data
 from services.ingest.errors import MissingFile
+from services.ingest.synthetic.whole_body.camera import Seen
 
 Array = NDArray[np.float64]
 

@@ -12,8 +12,7 @@ from services.bench.kinect import methods
 from services.bench.kinect.camera import see
 from services.bench.kinect.cells import KNEES, PUBLISHED, Cell, mean_cells, score
 from services.bench.kinect.methods import Method, Watched
-from services.bench.kinect.motions import RATE_HZ, TASK_NAMES, TASKS, Trial, trial
-from services.bench.kinect.people import TEST_PEOPLE, TUNING_PERSON, person
+from services.bench.kinect.motions import TASK_NAMES, TASKS, Trial, trial
 from services.bench.scoreboard import Row, at_least, at_most, informative
 from services.biomech.whole_body.constrained_ekf import OURS
 from services.biomech.whole_body.parameters import NO_PRIORS, ProcessNoise
@@ -26,6 +25,8 @@ from services.biomech.whole_body.tuning import (
     tuned_against_reference,
     tuned_by_innovations,
 )
+from services.ingest.synthetic.whole_body.people import TEST_PEOPLE, TUNING_PERSON, person
+from services.ingest.synthetic.whole_body.programme import RATE_HZ
 
 Array = NDArray[np.float64]
 Progress = Callable[[], None]

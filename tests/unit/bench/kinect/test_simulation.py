@@ -8,7 +8,7 @@ from services.bench.kinect.camera import see
 from services.bench.kinect.cells import score
 from services.bench.kinect.methods import Watched
 from services.bench.kinect.motions import trial
-from services.bench.kinect.people import person
+from services.ingest.synthetic.whole_body.people import person
 
 
 @pytest.fixture(scope="module")
