@@ -3,6 +3,7 @@
 import sys
 
 from services.bus.runner import run_node_service
+from services.estimation.body.warm_up import warm_up as warm_up_body
 from services.estimation.knee.warm_up import warm_up as warm_up_knee
 from services.estimation.lower_body.warm_up import warm_up as warm_up_lower_body
 from services.estimation.node import build
@@ -10,4 +11,5 @@ from services.estimation.node import build
 if __name__ == "__main__":
     warm_up_lower_body()
     warm_up_knee()
+    warm_up_body()
     sys.exit(run_node_service("estimation", build))

@@ -7,15 +7,13 @@ import numpy as np
 from schemas.rhythm import KnownRhythm, LearnedJoint, LearnedRhythm
 from services.biomech.rhythm.learned import Learned, LearnedStrides, velocity_waveform
 from services.biomech.rhythm.trusted import TrustedRhythm
-from services.estimation.rows import INDEX, RHYTHM_CHANNELS, Row
+from services.estimation.rows import MODEL, RHYTHM_CHANNELS, Row, places
 from services.flow.node import State
 
 LEAST_STRIDES = 3
 """Strides below which nothing counts as learned: as many as a mean needs in the metrics."""
 OWN_KINDS = ("previous trial", "previous visit")
 """Known rhythms that the estimator starts from, the nearest first. An exemplar is somebody else: only to compare."""
-
-_JOINTS = [INDEX[name] for name in RHYTHM_CHANNELS]
 
 
 class RhythmLearning:
@@ -24,7 +22,8 @@ class RhythmLearning:
     Only strides throughout which the same joints are valid count; the first of them says which joints those are.
     """
 
-    def __init__(self) -> None:
+    def __init__(self, model: str = MODEL) -> None:
+        self._joints = places(model, RHYTHM_CHANNELS)
         self._strides = LearnedStrides(len(RHYTHM_CHANNELS))
         self._valid: list[bool] = []
         """Of the joints that are learned; empty before the first sample with a lock."""
@@ -34,14 +33,14 @@ class RhythmLearning:
 
     def take(self, row: Row, valid: Sequence[bool]) -> LearnedRhythm | None:
         """Take one row with the validity of its coordinates; a report when it ends a bout of lock."""
-        seen = [valid[joint] for joint in _JOINTS]
+        seen = [valid[joint] for joint in self._joints]
         locked, dt_s = row.rhythm.locked, (row.captured_ns - self._last_ns) / 1e9
         if seen != self._valid:
             self._strides.interrupt()
             if locked and any(seen) and self._strides.strides == 0:
                 self._valid = seen
         if seen == self._valid:
-            self._strides.take([row.velocity[joint] for joint in _JOINTS], row.rhythm, dt_s)
+            self._strides.take([row.velocity[joint] for joint in self._joints], row.rhythm, dt_s)
         self._last_ns = row.captured_ns
         ended = self._was_locked and not locked
         self._was_locked = locked

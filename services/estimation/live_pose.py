@@ -2,16 +2,17 @@
 
 import math
 from collections.abc import Sequence
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
-from schemas.kinematics import LivePose, SegmentPose, SensorStatus
-from schemas.vocabulary import LOWER_BODY, Segment
+from schemas.kinematics import CameraStatus, LivePose, SegmentPose, SensorStatus
+from schemas.vocabulary import BODY_MODELS, JointCentre, Segment
 from services.biomech.forward_kinematics import ankle_position, segment_poses
 from services.biomech.lower_body import LowerBodyModel
 from services.biomech.rotations import quaternion_from_matrix
-from services.estimation.rows import Row
+from services.estimation.rows import MODEL, Row
 
 Array = NDArray[np.float64]
 SHANKS = (Segment.SHANK_RIGHT, Segment.SHANK_LEFT)
@@ -50,7 +51,19 @@ def segment_pictures(
     ]
 
 
-def waiting_pose(captured_ns: int, phase: str, message: str, notice: str, statuses: list[SensorStatus]) -> LivePose:
+class Watched(NamedTuple):
+    """What cameras add to a picture."""
+
+    centres: dict[JointCentre, list[float]]  # m, room; empty while nobody is in view
+    cameras: list[CameraStatus]
+
+
+NO_CAMERA = Watched({}, [])
+
+
+def waiting_pose(
+    captured_ns: int, phase: str, message: str, notice: str, statuses: list[SensorStatus], watched: Watched = NO_CAMERA
+) -> LivePose:
     """The picture before there is an estimate."""
     return LivePose(
         captured_ns=captured_ns,
@@ -61,17 +74,18 @@ def waiting_pose(captured_ns: int, phase: str, message: str, notice: str, status
         angles={},
         angles_std={},
         sensors=statuses,
-        centres={},
-        cameras=[],
+        centres=watched.centres,
+        cameras=watched.cameras,
         cadence_per_min=None,
     )
 
 
 def estimated_pose(
-    row: Row, bones: list[SegmentPose], valid: Sequence[bool], message: str, notice: str, statuses: list[SensorStatus]
-) -> LivePose:
-    """The picture of one row."""
-    seen = [(i, dof.name) for i, dof in enumerate(LOWER_BODY) if valid[i]]
+    row: Row, bones: list[SegmentPose], valid: Sequence[bool], message: str, notice: str,
+    statuses: list[SensorStatus], watched: Watched = NO_CAMERA, model: str = MODEL,
+) -> LivePose:  # fmt: skip
+    """The picture of one row of a body model."""
+    seen = [(i, dof.name) for i, dof in enumerate(BODY_MODELS[model]) if valid[i]]
     return LivePose(
         captured_ns=row.captured_ns,
         phase="estimating",
@@ -81,8 +95,8 @@ def estimated_pose(
         angles={name: row.position[i] for i, name in seen},
         angles_std={name: row.position_std[i] for i, name in seen},
         sensors=statuses,
-        centres={},
-        cameras=[],
+        centres=watched.centres,
+        cameras=watched.cameras,
         # Two steps a stride.
         cadence_per_min=row.rhythm.frequency / (2.0 * math.pi) * 120.0 if row.rhythm.locked else None,
     )

@@ -1,26 +1,40 @@
-"""The node of a session, by what is worn and by the estimator that was chosen."""
+"""The node of a session, by what measures and by the estimator that was chosen."""
 
 from schemas.session import SessionDescription
-from schemas.vocabulary import KNEE_ESTIMATORS
+from schemas.vocabulary import CAMERA_ESTIMATORS, FUSION_ESTIMATORS, KNEE_ESTIMATORS
+from services.estimation.body.node import BodyNode
 from services.estimation.knee.node import KneeNode
 from services.estimation.lower_body.node import LowerBodyNode
 from services.estimation.refusal import RefusingNode
 from services.flow.node import Node
 
+NO_FUSION = "sensors and camera in one estimate are not built yet: choose an estimator of one of them"
+ONLY_A_CAMERA = "{estimator} needs worn sensors, and this session has only a camera: choose {choice}"
+
 
 def build(description: SessionDescription) -> Node:
     """The node of one session with default parameters.
 
-    A knee estimator takes every leg with a thigh and a shank sensor; where there is none, or the estimator cannot work
-    with how they are worn, the session runs, says so on its page and estimates nothing. The other estimators take
-    whatever is worn as a lower body.
+    A knee estimator takes every leg with a thigh and a shank sensor, one of the camera the first depth camera; where
+    there is none, or the estimator cannot work with it, the session runs, says so on its page and estimates nothing.
+    The other estimators take whatever is worn as a lower body.
     """
-    if description.estimator not in KNEE_ESTIMATORS:
-        return LowerBodyNode(description)
     try:
-        return KneeNode(description)
+        return _chosen(description)
     except ValueError as error:
         return RefusingNode(description, sentence(str(error)))
+
+
+def _chosen(description: SessionDescription) -> Node:
+    """Raises ValueError where the estimator cannot work with what measures, with a reason."""
+    estimator = description.estimator
+    if estimator in FUSION_ESTIMATORS:
+        raise ValueError(NO_FUSION)
+    if estimator in CAMERA_ESTIMATORS:
+        return BodyNode(description)
+    if description.cameras and not description.hubs:
+        raise ValueError(ONLY_A_CAMERA.format(estimator=estimator, choice=next(iter(CAMERA_ESTIMATORS))))
+    return KneeNode(description) if estimator in KNEE_ESTIMATORS else LowerBodyNode(description)
 
 
 def sentence(words: str) -> str:

@@ -7,6 +7,7 @@ from schemas.session import SessionDescription
 from services.biomech.lower_body_ekf import NO_BOUND, MeasurementModel, NoiseModel
 from services.biomech.rhythm.parameters import TrustedParameters
 from services.biomech.single_joint.innovation_gate import InnovationGate
+from services.estimation.body.parameters import BodyParameters
 
 
 @dataclass(frozen=True)
@@ -238,6 +239,7 @@ class EstimationParameters:
     follow_bias: bool = True  # in pauses, see resting_bias.py; without it the first standing's biases stay
     segment_motion: SegmentMotionParameters = field(default_factory=SegmentMotionParameters)
     knee: KneeParameters = field(default_factory=KneeParameters)
+    body: BodyParameters = field(default_factory=BodyParameters)
     lateness_s: float = 0.04  # s of captured time that one hub may lag behind another before it is not waited for
     same_tick_s: float = 0.0005  # s, samples closer than this are fused at the time of the earliest
     before_walking_s: float = (

@@ -34,6 +34,8 @@ STILL_STD = 0.03
 """m. Largest robust deviation of a tracked centre, arms apart, in a still second: noise 0.01, wander of a bone."""
 UPRIGHT = radians(25.0)
 """Largest angle of trunk, thigh and shank against the vertical while standing, camera offsets included."""
+ARM, FOREARM = radians(35.0), radians(50.0)
+"""The same of upper arm and forearm. Arms held otherwise are no rest posture: they would be taken for offsets."""
 TURNED = radians(30.0)
 """A heading beyond this is told by the camera; below, facing it is likelier than what 0.17 m of pelvis show."""
 UNKNOWN_STATURE_SPREAD = 0.05
@@ -91,19 +93,38 @@ def median_centres(centres: Array, state: States) -> Array:
 
 
 def is_standing(centres: Array, state: States) -> bool:
-    """Whether frames (t, 15, 3) show someone upright, legs straight below, and still."""
+    """Whether frames (t, 15, 3) show someone upright, legs straight below, arms hanging, and still."""
+    return not_standing(centres, state) == ""
+
+
+def not_standing(centres: Array, state: States) -> str:
+    """Why frames (t, 15, 3) do not show a standing, still person, in words for a therapist; empty if they do."""
     middle = median_centres(centres, state)
     if not np.isfinite(middle).all():
-        return False
-    spread = np.nanmedian(np.abs(np.where(state[:, :, None] == 2, centres, np.nan) - middle), axis=0)
+        return "not all of the body was in view"
     body = [PLACE[c] for c in CENTRE_NAMES if not c.startswith(("elbow", "wrist", "ankle"))]
-    if np.nanmax(spread[body]) > STILL_STD:
-        return False
-    bones = [(JointCentre.SPINE_BASE, JointCentre.SPINE_SHOULDER)]
+    tracked = state[:, body] == 2
+    if not tracked.any(axis=0).all():
+        return "not all of the body was in view"
+    spread = np.nanmedian(np.where(tracked[:, :, None], np.abs(centres[:, body] - middle[body]), np.nan), axis=0)
+    if spread.max() > STILL_STD:
+        return "the person moved"
+    for upper, lower, most, words in _hanging():
+        if _inclination(middle[PLACE[upper]] - middle[PLACE[lower]]) >= most:
+            return words
+    return ""
+
+
+def _hanging() -> list[tuple[JointCentre, JointCentre, float, str]]:
+    """Bones that hang or stand upright while standing: upper end, lower end, largest inclination, what it is else."""
+    bones = [(JointCentre.SPINE_SHOULDER, JointCentre.SPINE_BASE, UPRIGHT, "the trunk was not upright")]
     for side in ("right", "left"):
-        knee = JointCentre(f"knee_{side}")
-        bones += [(knee, JointCentre(f"hip_{side}")), (JointCentre(f"ankle_{side}"), knee)]
-    return all(_inclination(middle[PLACE[upper]] - middle[PLACE[lower]]) < UPRIGHT for lower, upper in bones)
+        hip, knee, ankle, shoulder, elbow, wrist = (
+            JointCentre(f"{name}_{side}") for name in ("hip", "knee", "ankle", "shoulder", "elbow", "wrist")
+        )
+        bones += [(hip, knee, UPRIGHT, "the legs were bent"), (knee, ankle, UPRIGHT, "the legs were bent")]
+        bones += [(shoulder, elbow, ARM, "the arms did not hang"), (elbow, wrist, FOREARM, "the arms did not hang")]
+    return bones
 
 
 def _inclination(bone: Array) -> float:

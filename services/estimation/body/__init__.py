@@ -1,0 +1,1 @@
+"""The whole body of one person in front of a depth camera."""

@@ -1,0 +1,61 @@
+"""The calibration of a session with a camera, and when it is sent again."""
+
+import numpy as np
+
+from schemas.kinematics import Calibration
+from schemas.session import SessionDescription
+from schemas.vocabulary import EventSource, Side
+from services.biomech.whole_body.model import DOF, LENGTH_NAMES
+from services.biomech.whole_body.observability import LARGEST_DEVIATION
+from services.estimation.body.coordinates import MODEL
+from services.estimation.body.parameters import BodyParameters
+from services.estimation.body.tracker import BodyTracker, Posture
+from services.flow.node import State, pack_array, unpack_array
+
+STANDING = "quiet standing, taken for the rest posture of people"
+UNKNOWN = "none: nobody stood still; angles are as the camera shows them, with its offsets"
+HINGES = [DOF[f"{joint}_flexion_{side}"] for joint in ("hip", "knee") for side in ("right", "left")]
+"""Angles whose deviation is the calibration's quality."""
+
+
+class FittedBody:
+    """Of one session."""
+
+    def __init__(self, description: SessionDescription, unused: dict[str, str], parameters: BodyParameters) -> None:
+        self._description, self._unused, self._parameters = description, unused, parameters
+        self._begun = 0
+        self._lengths = np.zeros(len(LENGTH_NAMES))
+
+    def news(self, tracker: BodyTracker, posture: Posture) -> Calibration | None:
+        """The calibration, after a start and when a length has changed."""
+        lengths = posture.told.lengths
+        change = np.abs(lengths - self._lengths) > self._parameters.calibration_change * self._lengths
+        if tracker.begun == self._begun and not change.any():
+            return None
+        self._begun, self._lengths = tracker.begun, lengths
+        return Calibration(
+            model=MODEL,
+            estimator=self._description.estimator,
+            method="standing" if tracker.absolute else "posture fitted to the first frames",
+            datum=STANDING if tracker.absolute else UNKNOWN,
+            quality=self._quality(posture, absolute=tracker.absolute),
+            sensors=[],
+            events_from=dict.fromkeys(Side, EventSource.CAMERA),
+            unused=self._unused,
+            misplaced={},
+            lengths=dict(zip(LENGTH_NAMES, lengths.tolist(), strict=True)),
+            absolute=tracker.absolute,
+        )
+
+    def _quality(self, posture: Posture, *, absolute: bool) -> float:
+        """1 - (mean deviation of hips and knees) / the largest that is shown."""
+        share = float(posture.told.deviations[0, HINGES].mean()) / LARGEST_DEVIATION
+        return min(max(1.0 - share, 0.0), 1.0 if absolute else self._parameters.population_quality)
+
+    def snapshot(self) -> State:
+        """What was said last."""
+        return {"begun": self._begun, "lengths": pack_array(self._lengths)}
+
+    def restore(self, state: State) -> None:
+        """Inverse of `snapshot`."""
+        self._begun, self._lengths = state["begun"], unpack_array(state["lengths"])
