@@ -3,6 +3,7 @@
 from dataclasses import dataclass, field
 
 from schemas.imu import ImuBatch, ReferenceBatch, SensorSamples
+from schemas.skeleton import SkeletonBatch
 from services.flow.message import Stream
 from services.ingest.driver import SourceMessage
 from services.ingest.parameters import PARAMETERS, IngestParameters
@@ -65,10 +66,23 @@ def joined(first: SourceMessage, second: SourceMessage) -> SourceMessage:
         case ImuBatch() as a, ImuBatch() as b:
             sensors = [_joined_samples(x, y) for x, y in zip(a.sensors, b.sensors, strict=True)]
             return second._replace(payload=ImuBatch(sensors=sensors, marks=a.marks + b.marks))
+        case SkeletonBatch() as a, SkeletonBatch() as b:
+            return second._replace(payload=_joined_frames(a, b))
         case ReferenceBatch() as a, ReferenceBatch() as b:
             batch = ReferenceBatch(captured_ns=a.captured_ns + b.captured_ns, values=a.values + b.values)
             return second._replace(payload=batch)
     raise TypeError(f"messages of {first.stream.name} cannot be joined")
+
+
+def _joined_frames(a: SkeletonBatch, b: SkeletonBatch) -> SkeletonBatch:
+    return SkeletonBatch(
+        captured_ns=a.captured_ns + b.captured_ns,
+        body=a.body + b.body,
+        people=a.people + b.people,
+        position=a.position + b.position,
+        state=a.state + b.state,
+        marks=a.marks + b.marks,
+    )
 
 
 def _joined_samples(a: SensorSamples, b: SensorSamples) -> SensorSamples:

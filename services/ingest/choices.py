@@ -5,7 +5,14 @@ from typing import Any
 
 from schemas.rhythm import KnownRhythm
 from schemas.session import SessionDescription, WalkPath
-from schemas.vocabulary import ESTIMATORS, KNEE_ESTIMATORS, LOWER_BODY_ESTIMATORS, Task
+from schemas.vocabulary import (
+    CAMERA_ESTIMATORS,
+    ESTIMATORS,
+    FUSION_ESTIMATORS,
+    KNEE_ESTIMATORS,
+    LOWER_BODY_ESTIMATORS,
+    Task,
+)
 from services.biomech.event_sources import whole_legs, worn_segments
 from services.ingest.errors import InvalidOption
 
@@ -40,12 +47,42 @@ class Choices:
             "task": self.task,
             "walkway_m": self.walkway_m,
         }
+        if self.estimator is not None:
+            lacking = missing_source(self.estimator, hubs=bool(description.hubs), cameras=bool(description.cameras))
+            if lacking is not None:
+                raise InvalidOption(lacking)
         if self.estimator in KNEE_ESTIMATORS and not whole_legs(worn_segments(description.hubs)):
             raise InvalidOption(
                 f"estimator {self.estimator!r} needs a sensor on the thigh and one on the shank of one leg; assign the "
                 f"sensors anew or choose one of {', '.join(LOWER_BODY_ESTIMATORS)}"
             )
         return description.model_copy(update={name: value for name, value in chosen.items() if value is not None})
+
+
+def usual_estimator(*, hubs: bool, cameras: bool) -> str:
+    """What is taken where nobody chose: the first that uses all there is."""
+    if cameras:
+        return next(iter(FUSION_ESTIMATORS if hubs else CAMERA_ESTIMATORS))
+    return "rhythmic_ekf"
+
+
+def missing_source(estimator: str, *, hubs: bool, cameras: bool) -> str | None:
+    """What an estimator needs that the session does not have, and what to choose instead; None: nothing."""
+    if estimator in FUSION_ESTIMATORS:
+        if hubs and cameras:
+            return None
+        needed = "sensors and a camera"
+    elif estimator in CAMERA_ESTIMATORS:
+        if cameras:
+            return None
+        needed = "a camera"
+    elif hubs:
+        return None
+    else:
+        needed = "sensors on the body"
+    able = [*(LOWER_BODY_ESTIMATORS if hubs else ()), *(CAMERA_ESTIMATORS if cameras else ())]
+    has = "sensors only" if hubs and not cameras else "a camera only" if cameras and not hubs else "both"
+    return f"estimator {estimator!r} needs {needed} and this session has {has}; choose one of {', '.join(able)}"
 
 
 AS_THE_SOURCE_SAYS = Choices()

@@ -31,6 +31,8 @@ from schemas.health import Reason, Rejection
 from schemas.imu import ImuBatch, ReferenceBatch
 from schemas.payload import Payload
 from schemas.session import SessionDescription
+from schemas.signals import IMU, REFERENCE, SKELETON
+from schemas.skeleton import SkeletonBatch
 from services.flow.message import DecodeError, Envelope, Stream, decode_payload
 from services.flow.raw_streams import raw_streams
 from services.flow.rejections import RejectionCounter
@@ -44,7 +46,9 @@ MOST_RECORD_BYTES = 64 * 1024 * 1024
 MOST_FILE_BYTES = 4 * 1024 * 1024 * 1024
 """The raw samples are held in memory; longer sessions lie in several files."""
 
-_HUB_NAME = re.compile(r"[A-Za-z0-9_-]{1,64}")
+_RAW_TOPICS = tuple(f"{signal.name}/" for signal in (IMU, SKELETON, REFERENCE))
+
+_SOURCE_NAME = re.compile(r"[A-Za-z0-9_-]{1,64}")
 
 _BROKEN = (McapError, ValueError, EOFError, struct.error, KeyError, OverflowError, zlib.error, MemoryError)
 """Whatever the parser raises on bytes that are not what they should be."""
@@ -89,8 +93,11 @@ class McapRecording:
         found = self._contents.description
         if found is None:
             raise UnreadableFile(f"{place(paths[0])}: no session of Ambula in it; give the raw file of a recording")
-        if not all(_HUB_NAME.fullmatch(hub.name) for hub in found.hubs):
-            raise UnreadableFile(f"{place(paths[0])}: a hub's name cannot stand in a key; this file was altered")
+        names = [hub.name for hub in found.hubs] + [camera.name for camera in found.cameras]
+        if not all(_SOURCE_NAME.fullmatch(name) for name in names):
+            raise UnreadableFile(
+                f"{place(paths[0])}: a hub's or camera's name cannot stand in a key; this file was altered"
+            )
         self._recorded = found
         if not any(self._contents.stored.get(stream.name) for stream in raw_streams(found)):
             raise EmptyFile(f"{place(paths[0])}: no samples in it; give the raw file of the recording")
@@ -127,11 +134,18 @@ class McapRecording:
                 self._undelivered.add(stream.name, Reason.WRONG_SHAPE)
 
     def _fits(self, stream: Stream, payload: Payload) -> bool:
-        """A hub has as many sensors, and a row of truth as many channels, as the description says."""
+        """Sensors of a hub, joints of a frame and channels of truth are as many as the description says."""
         match payload:
             case ImuBatch():
                 hub = next(hub for hub in self._recorded.hubs if hub.name == stream.source)
                 return len(payload.sensors) == len(hub.sensors)
+            case SkeletonBatch():
+                camera = next(camera for camera in self._recorded.cameras if camera.name == stream.source)
+                width = len(camera.joints)
+                return all(
+                    len(position) == len(state) == width
+                    for position, state in zip(payload.position, payload.state, strict=True)
+                )
             case ReferenceBatch():
                 width = len(self._recorded.reference)
                 rows = payload.values
@@ -176,7 +190,7 @@ class McapRecording:
         if channel.topic == SESSION_TOPIC:
             self._describe(record.data.decode())
             return
-        if not channel.topic.startswith(("imu/", "reference/")) or not record.data:
+        if not channel.topic.startswith(_RAW_TOPICS) or not record.data:
             return
         epoch = int(channel.metadata[EPOCH_KEY])
         kept = self._contents.stored.setdefault(channel.topic, {})

@@ -10,6 +10,7 @@ from schemas.health import Progress, SessionHealth
 from schemas.imu import ImuBatch
 from schemas.session import SessionDescription
 from schemas.signals import session_token_key
+from schemas.skeleton import SkeletonBatch
 from schemas.standing import StandingMark
 from services.bus.connection import Bus
 from services.bus.logs import event
@@ -188,7 +189,7 @@ class Playback:
 
     def _send(self, message: SourceMessage) -> None:
         payload = message.payload
-        if self._marks and isinstance(payload, ImuBatch):
+        if self._marks and isinstance(payload, ImuBatch | SkeletonBatch):
             payload = payload.model_copy(update={"marks": payload.marks + self._marks})
             self._marks = []
         envelope = self._publishers[message.stream].send(message.captured_ns, payload)

@@ -1,4 +1,4 @@
-"""A recording folder as a source: csv columns in vendor units and axes become samples in Ambula's."""
+"""A recording folder as a source: columns in vendor units and axes become samples and frames in Ambula's."""
 
 import itertools
 from collections.abc import Iterator
@@ -9,23 +9,27 @@ import numpy as np
 
 from schemas.health import Rejection
 from schemas.session import (
+    CameraDescription,
     HubDescription,
     ReferenceChannel,
     SensorDescription,
     SessionDescription,
     StandingInterval,
 )
-from schemas.signals import IMU
+from schemas.signals import IMU, SKELETON
 from schemas.vocabulary import Segment
 from services.flow.message import Stream
 from services.flow.rejections import RejectionCounter
+from services.ingest.camera_file import read_camera
+from services.ingest.camera_view import camera_view, floor_height_m
 from services.ingest.data import find_data
 from services.ingest.driver import SourceMessage
+from services.ingest.entries import CameraEntry, HubEntry, SensorEntry
 from services.ingest.identity import Identity
-from services.ingest.manifest import HubEntry, Manifest, SensorEntry, load_manifest
+from services.ingest.manifest import Manifest, load_manifest
 from services.ingest.reference import channels_of, read_reference, reference_track
 from services.ingest.sensor_file import read_sensor
-from services.ingest.tracks import hub_messages, in_order, reference_messages
+from services.ingest.tracks import hub_messages, in_order, reference_messages, skeleton_messages
 
 
 class Recording:
@@ -41,12 +45,14 @@ class Recording:
             [read_sensor(self._folder, self._manifest, sensor, self._rejected) for sensor in hub.sensor]
             for hub in self._manifest.hub
         ]
+        seen = [read_camera(self._folder, self._manifest, entry, self._rejected) for entry in self._manifest.camera]
         truth = [
             read_reference(self._folder, self._manifest, entry, self._rejected) for entry in self._manifest.reference
         ]
-        starts = [track.time_s.min() for track in itertools.chain(*raw)] + [table.time_s.min() for table in truth]
-        zero_s = float(min(starts))
+        times = [track.time_s for track in itertools.chain(*raw)] + [track.time_s for track in seen]
+        zero_s = float(min(time_s.min() for time_s in times + [table.time_s for table in truth]))
         self._hubs = [[track.placed(zero_s) for track in tracks] for tracks in raw]
+        self._cameras = [track.placed(zero_s) for track in seen]
         self._reference = reference_track(truth, zero_s) if truth else None
 
     def describe(self) -> SessionDescription:
@@ -63,14 +69,14 @@ class Recording:
             protocol=manifest.protocol,
             task=manifest.task,
             walkway_m=manifest.walkway_m,
-            estimator=manifest.estimator,
+            estimator=manifest.chosen_estimator,
             walk_path=manifest.walk_path,
             hubs=[
                 HubDescription(name=hub.name, sensors=[_described(manifest, sensor) for sensor in hub.sensor])
                 for hub in manifest.hub
             ],
-            cameras=[],
-            anthropometry=manifest.anthropometry.described(),
+            cameras=[_described_camera(manifest, entry) for entry in manifest.camera],
+            anthropometry=manifest.body.described(),
             standing=[
                 StandingInterval(from_ns=round(span.from_s * 1e9), to_ns=round(span.to_s * 1e9))
                 for span in manifest.standing
@@ -86,10 +92,14 @@ class Recording:
         return identity.choices.applied(recorded)
 
     def messages(self) -> Iterator[SourceMessage]:
-        """One message per hub and tick, truth beside it."""
+        """One message per hub and tick and per frame of a camera, truth beside them."""
         streams = [
             hub_messages(Stream(IMU, hub.name), tracks, round(1e9 / _fastest(self._manifest, hub)))
             for hub, tracks in zip(self._manifest.hub, self._hubs, strict=True)
+        ]
+        streams += [
+            skeleton_messages(Stream(SKELETON, camera.name), track)
+            for camera, track in zip(self._manifest.camera, self._cameras, strict=True)
         ]
         if self._reference is not None:
             streams.append(reference_messages(self._reference, round(1e9 / self._manifest.rate_hz)))
@@ -100,7 +110,8 @@ class Recording:
         return self._rejected.report()
 
     def _last_ns(self) -> int:
-        return max(int(track.captured_ns[-1]) for tracks in self._hubs for track in tracks)
+        sampled = [track.captured_ns for track in itertools.chain(*self._hubs)]
+        return max(int(captured_ns[-1]) for captured_ns in sampled + [track.captured_ns for track in self._cameras])
 
 
 def _fastest(manifest: Manifest, hub: HubEntry) -> float:
@@ -116,6 +127,16 @@ def _described(manifest: Manifest, sensor: SensorEntry) -> SensorDescription:
         upward_axis=None if sensor.upward_axis is None else _unit(sensor.upward_axis),
         placement=sensor.placement,
         position_in_segment=sensor.position_in_segment,
+    )
+
+
+def _described_camera(manifest: Manifest, entry: CameraEntry) -> CameraDescription:
+    return CameraDescription(
+        name=entry.name,
+        kind=entry.kind,
+        rate_hz=entry.rate_hz or manifest.rate_hz,
+        joints=list(camera_view(entry).room_joints),
+        floor_m=floor_height_m(entry),
     )
 
 

@@ -10,8 +10,9 @@ from scipy.spatial.transform import Rotation
 from schemas.health import Reason
 from services.flow.rejections import RejectionCounter
 from services.ingest.axes import rotation_from_axes
+from services.ingest.entries import LEANS, InclinationEntry, OrientationEntry, PointEntry, ReferenceEntry
 from services.ingest.errors import EmptyFile, place
-from services.ingest.manifest import Manifest, OrientationEntry, PointEntry, ReferenceEntry
+from services.ingest.manifest import Manifest
 from services.ingest.sensor_file import csv_format, expanded
 from services.ingest.table import Table, read_table
 from services.ingest.timing import advancing_rows, row_times_s
@@ -33,7 +34,8 @@ def channels_of(entry: ReferenceEntry) -> list[tuple[str, str]]:
     """Name and SI unit of each channel of a file, in the order of its values."""
     channels = [(channel.name, reference_unit(channel.unit)[1]) for channel in entry.channel]
     channels += [(f"{point.name}_{axis}", "m") for point in entry.point for axis in "xyz"]
-    return channels + [(f"{turn.name}_{axis}", "1") for turn in entry.orientation for axis in "wxyz"]
+    channels += [(f"{turn.name}_{axis}", "1") for turn in entry.orientation for axis in "wxyz"]
+    return channels + [(f"{lean.name}_{direction}", "rad") for lean in entry.inclination for direction in LEANS]
 
 
 def read_reference(
@@ -46,6 +48,8 @@ def read_reference(
         wanted += expanded(point.columns, "xyz")
     for turn in entry.orientation:
         wanted += turn.columns
+    for lean in entry.inclination:
+        wanted += expanded(lean.lower, "xyz") + expanded(lean.upper, "xyz")
     table = read_table(
         folder / entry.file,
         wanted + ([time.column] if time.column else []),
@@ -84,12 +88,21 @@ def _converted(entry: ReferenceEntry, table: Table) -> Values:
     for turn in entry.orientation:
         blocks.append(_quat_world_from_segment(turn, table.values[:, at : at + 4]))
         at += 4
+    for lean in entry.inclination:
+        blocks.append(_inclination(lean, table.values[:, at : at + 3], table.values[:, at + 3 : at + 6]))
+        at += 6
     return np.hstack(blocks)
 
 
 def _position_in_world(point: PointEntry, position_in_lab: Values) -> Values:
     R_world_from_lab = rotation_from_axes(point.axes, point.name)
     return position_in_lab @ R_world_from_lab.T * scale_to_si("length", point.unit)
+
+
+def _inclination(lean: InclinationEntry, lower_in_lab: Values, upper_in_lab: Values) -> Values:
+    """n x 2, rad: angle of the line from its lower to its upper end to the vertical, forward and to the right."""
+    line = (upper_in_lab - lower_in_lab) @ rotation_from_axes(lean.axes, lean.name).T
+    return np.arctan2(line[:, [0, 2]], line[:, [1]])
 
 
 def _quat_world_from_segment(turn: OrientationEntry, quat_lab_from_vendor: Values) -> Values:

@@ -10,8 +10,9 @@ from schemas.health import Reason
 from services.flow.rejections import RejectionCounter
 from services.ingest.axes import rotation_from_axes
 from services.ingest.checks import DeclaredUnits, check_units
+from services.ingest.entries import FormatEntry, QuantityEntry, SensorEntry
 from services.ingest.errors import EmptyFile, place
-from services.ingest.manifest import FormatEntry, Manifest, QuantityEntry, SensorEntry
+from services.ingest.manifest import Manifest
 from services.ingest.table import CsvFormat, Table, read_table
 from services.ingest.timing import advancing_rows, row_times_s
 from services.ingest.tracks import ImuTrack

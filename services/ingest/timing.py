@@ -3,8 +3,8 @@
 import numpy as np
 from numpy.typing import NDArray
 
+from services.ingest.entries import FRAME, TimeEntry
 from services.ingest.errors import ClockError, place
-from services.ingest.manifest import FRAME, TimeEntry
 from services.ingest.table import Table
 from services.ingest.units import scale_to_si
 
@@ -13,6 +13,12 @@ MOST_BACKWARDS_SHARE = 0.01
 
 LONGEST_RECORDING_S = 7 * 86400.0
 """s. A span beyond it is a wrong unit of the time column."""
+
+
+def check_time(time: TimeEntry) -> None:
+    """Raises UnknownUnit for a unit that is neither a frame count nor a time."""
+    if time.unit != FRAME:
+        scale_to_si("time", time.unit)
 
 
 def row_times_s(table: Table, time: TimeEntry, rate_hz: float) -> NDArray[np.float64]:

@@ -1,4 +1,4 @@
-"""Samples as arrays, and how they become messages: one per hub and tick, truth beside it, in the order of capture."""
+"""Samples as arrays, and how they become messages: one per hub and tick or per frame of a camera, as captured."""
 
 import heapq
 from collections.abc import Iterable, Iterator, Sequence
@@ -12,6 +12,7 @@ from schemas.imu import ImuBatch, ReferenceBatch
 from services.flow.message import Stream
 from services.flow.raw_streams import REFERENCE_STREAM
 from services.ingest.driver import SourceMessage
+from services.ingest.skeleton import RoomFrames, skeleton_batch
 
 Times = NDArray[np.int64]
 Values = NDArray[np.float64]
@@ -24,6 +25,16 @@ class ImuTrack:
     captured_ns: Times
     angular_velocity: Values
     specific_force: Values
+
+
+@dataclass(frozen=True, slots=True)
+class SkeletonTrack:
+    """One camera: captured_ns n (increasing), whom it followed and how many it saw, n each, and the n frames."""
+
+    captured_ns: Times
+    body: list[int | None]
+    people: list[int]
+    frames: RoomFrames
 
 
 @dataclass(frozen=True, slots=True)
@@ -60,6 +71,15 @@ def hub_messages(stream: Stream, tracks: Sequence[ImuTrack], tick_ns: int) -> It
         )
         newest = max(samples.captured_ns[-1] for samples in batch.sensors if samples.captured_ns)
         yield SourceMessage(stream, newest, batch)
+
+
+def skeleton_messages(stream: Stream, track: SkeletonTrack) -> Iterator[SourceMessage]:
+    """Frames of a camera, one by one."""
+    frames = track.frames
+    for k, captured_ns in enumerate(track.captured_ns.tolist()):
+        one = frames._replace(position=frames.position[k : k + 1], state=frames.state[k : k + 1])
+        batch = skeleton_batch([captured_ns], track.body[k : k + 1], track.people[k : k + 1], one)
+        yield SourceMessage(stream, captured_ns, batch)
 
 
 def reference_messages(track: ReferenceTrack, tick_ns: int) -> Iterator[SourceMessage]:
