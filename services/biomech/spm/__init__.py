@@ -1,0 +1,1 @@
+"""Statistical parametric mapping of curves: where in a movement two methods differ."""
