@@ -5,6 +5,7 @@ from collections.abc import Sequence
 from schemas.kinematics import CameraStatus, LivePose
 from schemas.session import SessionDescription
 from schemas.vocabulary import SensorState
+from services.biomech.whole_body.directions import directions
 from services.biomech.whole_body.model import CENTRE_NAMES
 from services.estimation.body.coordinates import MODEL
 from services.estimation.body.frames import Frame, FrameIntake
@@ -56,7 +57,8 @@ class Screen:
         centres = dict(zip(CENTRE_NAMES, posture.centres.tolist(), strict=True)) if is_there else {}
         message, cameras = self._said(frame, row.captured_ns)
         watched = Watched(centres, cameras)
-        return estimated_pose(row, [], valid, message, notice, self._unused, watched, MODEL)
+        pose = estimated_pose(row, [], valid, message, notice, self._unused, watched, MODEL)
+        return with_directions(pose, row.position, row.position_std, posture.seen)
 
     def _said(self, frame: Frame, now_ns: int) -> tuple[str, list[CameraStatus]]:
         """What matters most, and the cameras' states."""
@@ -77,3 +79,13 @@ class Screen:
         used = CameraStatus(camera=self._intake.camera.name, state=state, people=people, since_ns=since_ns)
         unused = [CameraStatus(camera=name, state=SensorState.UNUSED, people=0, since_ns=0) for name in self._others]
         return [used, *unused]
+
+
+def with_directions(
+    pose: LivePose, position: Sequence[float], position_std: Sequence[float], seen: Sequence[bool]
+) -> LivePose:
+    """The picture with trunk lean and arm elevation beside the angles of joints, where the camera sees them."""
+    shown = directions(position, position_std, seen)
+    angles = pose.angles | {name: angle for name, (angle, _) in shown.items()}
+    stds = pose.angles_std | {name: std for name, (_, std) in shown.items()}
+    return pose.model_copy(update={"angles": angles, "angles_std": stds})

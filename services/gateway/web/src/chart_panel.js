@@ -1,14 +1,15 @@
 // A joint's rolling curve with its newest angles above it.
-import { RollingChart } from "./charts.js";
+import { RollingChart, angleName } from "./charts.js";
 import { el, say } from "./dom.js";
-import { SIDES } from "./figure.js";
+import { SIDES } from "./vectors.js";
 import { degrees, number } from "./units.js";
 
 export class ChartPanel {
-  constructor({ joint, title, range }) {
+  constructor({ joint, title, range, sides = SIDES }) {
     this.joint = joint;
     this.range = range;
-    this.now = Object.fromEntries(SIDES.map((side) => [side, el("b", { class: side })]));
+    this.sides = sides;
+    this.now = sides.map((side) => el("b", { class: side }));
     this.host = el("div", { class: "chart" });
     this.node = el(
       "section",
@@ -18,27 +19,23 @@ export class ChartPanel {
         { class: "panel-head" },
         el("h2", {}, title),
         el("span", { class: "spring" }),
-        ...Object.values(this.now),
+        ...this.now,
       ),
       this.host,
     );
   }
 
   start() {
-    this.rolling = new RollingChart(this.host, this.joint, this.range);
-  }
-
-  /** Name these sides only. */
-  only(sides) {
-    for (const side of SIDES) this.now[side].hidden = !sides.includes(side);
+    this.rolling = new RollingChart(this.host, this.joint, this.range, this.sides);
   }
 
   add(pose, trail) {
     this.rolling.add([...trail, pose]);
-    for (const side of SIDES) {
-      const value = degrees(pose.angles[`${this.joint}_${side}`]);
-      say(this.now[side], `${side === "left" ? "L" : "R"} ${number(value, 0)}${value === null ? "" : "°"}`);
-    }
+    this.sides.forEach((side, place) => {
+      const value = degrees(pose.angles[angleName(this.joint, side)]);
+      const letter = side === null ? "" : side === "left" ? "L " : "R ";
+      say(this.now[place], `${letter}${number(value, 0)}${value === null ? "" : "°"}`);
+    });
   }
 
   dispose() {

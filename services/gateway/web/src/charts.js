@@ -1,7 +1,7 @@
 // Curves: the last eight seconds while a session runs, mean and spread over the stride afterwards. Degrees here.
 import uPlot from "uplot";
 
-import { GRID, SIDE_COLOUR, SIDE_DASH, SOFT_INK, faint } from "./palette.js";
+import { GRID, PELVIS, SIDE_COLOUR, SIDE_DASH, SOFT_INK, faint } from "./palette.js";
 import { degrees, number } from "./units.js";
 
 const SPAN_S = 8;
@@ -27,12 +27,15 @@ function axis(label, values) {
 
 const plain = (value) => number(value, 0);
 
-/** Five series per chart: per side the curve, and its band's upper and lower edge. */
-function sidesWithBands(width) {
+/** An angle's name: of a joint of one side, or of what has no side. */
+export const angleName = (joint, side) => (side === null ? joint : `${joint}_${side}`);
+
+/** Three series per side: the curve, and its band's upper and lower edge. A side of null is the middle of the body. */
+function sidesWithBands(width, sides = SIDES) {
   const series = [{}];
   const bands = [];
-  SIDES.forEach((side, index) => {
-    const colour = SIDE_COLOUR[side];
+  sides.forEach((side, index) => {
+    const colour = SIDE_COLOUR[side] ?? PELVIS;
     const edge = { stroke: "transparent", width: 0, points: { show: false } };
     series.push(
       { label: side, stroke: colour, width, dash: SIDE_DASH[side], points: { show: false } },
@@ -65,15 +68,15 @@ function fitted(host, options, data) {
   };
 }
 
-/** A joint of both legs over the last eight seconds, with a band of two standard deviations and the contacts. */
+/** A joint of both sides over the last eight seconds, with a band of two standard deviations and the contacts. */
 export class RollingChart {
-  constructor(host, joint, [low, high]) {
-    this.joint = joint;
+  constructor(host, joint, [low, high], sides = SIDES) {
+    this.names = sides.map((side) => angleName(joint, side));
     this.range = [low, high];
     this.at = [];
-    this.rows = SIDES.map(() => ({ value: [], upper: [], lower: [] }));
+    this.rows = sides.map(() => ({ value: [], upper: [], lower: [] }));
     this.contacts = [];
-    const { series, bands } = sidesWithBands(2);
+    const { series, bands } = sidesWithBands(2, sides);
     this.fit = fitted(
       host,
       {
@@ -87,7 +90,7 @@ export class RollingChart {
         ],
         hooks: { draw: [(chart) => this.drawContacts(chart)] },
       },
-      [[], [], [], [], [], [], []],
+      [[], ...this.rows.flatMap(() => [[], [], []])],
     );
   }
 
@@ -107,8 +110,7 @@ export class RollingChart {
 
   append(pose) {
     this.at.push(pose.at_s);
-    SIDES.forEach((side, index) => {
-      const name = `${this.joint}_${side}`;
+    this.names.forEach((name, index) => {
       const value = degrees(pose.angles[name]);
       const spread = 2 * (degrees(pose.angles_std[name]) ?? 0);
       this.rows[index].value.push(value);

@@ -1,10 +1,14 @@
 // From a pose to points: pure geometry, shared by the drawing in space and the one on paper.
 // World: x forward, y up, z right (ISB); quaternions w, x, y, z; metres.
 
-export const SIDES = ["left", "right"];
+import { roomFigureOf } from "./room_figure.js";
+import { SIDES, dot, middle, minus, plus, times, unit } from "./vectors.js";
+
 const PELVIS_HEIGHT_M = 0.11;
 const FOOT_LENGTH_M = 0.2;
 const TRUNK_M = 0.42;
+const HEAD_ABOVE_NECK_M = 0.2;
+const LETTER_FROM_TOE = [0.08, 0.03, 0];
 const LABEL = { ahead: 0.2, apart: 0.1 };
 
 /** Vector seen from the world, of a vector seen from the segment. */
@@ -21,19 +25,14 @@ export function headingOf(quat) {
   return Math.atan2(-z, x);
 }
 
-export const plus = (a, b) => [a[0] + b[0], a[1] + b[1], a[2] + b[2]];
-export const minus = (a, b) => [a[0] - b[0], a[1] - b[1], a[2] - b[2]];
-export const times = (a, factor) => a.map((value) => value * factor);
-export const dot = (a, b) => a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
-export const unit = (a) => times(a, 1 / Math.max(1e-9, Math.hypot(...a)));
-const middle = (a, b) => times(plus(a, b), 0.5);
-
 /**
- * Points of the worn legs by name, which bones may be trusted, and where the body faces.
+ * Points of the worn legs by name, which bones may be trusted, and where the body faces. Of a body that a camera sees,
+ * its joint centres.
  * `body` has the lengths of the session's description. Pelvis and trunk are there only with both legs and a pelvis;
  * legs alone hang from their hips, which then are the origin. Null when there is no whole leg.
  */
 export function figureOf(pose, body) {
+  if (pose.centres && Object.keys(pose.centres).length > 0) return roomFigureOf(pose, body.floor_m);
   const sides = SIDES.filter((side) => pose.segments[`thigh_${side}`] && pose.segments[`shank_${side}`]);
   if (sides.length === 0) return null;
   const points = {};
@@ -55,6 +54,7 @@ function addLeg(points, valid, segments, side, body) {
   points[`knee_${side}`] = shank.position;
   points[`ankle_${side}`] = ankle;
   points[`toe_${side}`] = plus(ankle, rotate(shank.quat_world_from_segment, [FOOT_LENGTH_M, -0.04, 0]));
+  points[`letter_${side}`] = plus(points[`toe_${side}`], LETTER_FROM_TOE);
   valid[`thigh_${side}`] = thigh.valid;
   valid[`shank_${side}`] = shank.valid;
 }
@@ -82,6 +82,7 @@ function addTrunk(points, valid, pelvis) {
   points.pelvis = pelvis.position;
   points.pelvis_top = plus(middle(points.hip_left, points.hip_right), times(up, PELVIS_HEIGHT_M));
   points.neck = plus(points.pelvis_top, [0, TRUNK_M, 0]);
+  points.head = plus(points.neck, [0, HEAD_ABOVE_NECK_M, 0]);
   valid.pelvis = pelvis.valid;
 }
 

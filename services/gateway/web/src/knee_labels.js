@@ -1,6 +1,6 @@
 // The angle beside each knee of legs that are drawn alone: text over the picture, so that it stays sharp.
 import { el, say } from "./dom.js";
-import { SIDES } from "./figure.js";
+import { SIDES } from "./vectors.js";
 import { degrees, number } from "./units.js";
 
 export class KneeLabels {

@@ -1,7 +1,10 @@
 // One running session: skeleton, curves, numbers, sensors. What is older than a second is grey, always.
+import { AnglesPanel } from "./angles_panel.js";
+import { arrangementOf } from "./arrangement.js";
+import { CameraPanel } from "./camera_panel.js";
 import { ChartPanel } from "./chart_panel.js";
 import { el, fill, say } from "./dom.js";
-import { SIDES, figureOf } from "./figure.js";
+import { figureOf } from "./figure.js";
 import { KneePanel } from "./knee_panel.js";
 import { LiveSocket } from "./live_socket.js";
 import { LiveNumbers } from "./live_numbers.js";
@@ -13,20 +16,17 @@ import { SessionControls } from "./session_controls.js";
 import { Skeleton2d } from "./skeleton2d.js";
 import { Skeleton3d, canDraw3d } from "./skeleton3d.js";
 import { clock } from "./units.js";
-import { STALE_S, lastData, misplacedText, stateOf } from "./words.js";
-import { kneesOf } from "./worn.js";
-
-const JOINTS = [
-  { joint: "hip_flexion", title: "Hip flexion", range: [-30, 50] },
-  { joint: "knee_flexion", title: "Knee flexion", range: [-10, 80] },
-];
-const VIEWS = { side: "Side", front: "Front", back: "Back" };
+import { SIDES } from "./vectors.js";
+import { STALE_S, UNCALIBRATED, lastData, misplacedText, stateOf } from "./words.js";
 
 export class LiveView {
   constructor(host, session, { onEnd }) {
     this.session = session;
     this.segments = {};
     this.sensors = [];
+    this.cameras = [];
+    this.charts = [];
+    this.panels = [];
     this.misplaced = session.misplaced;
     this.age = null;
     this.status = null;
@@ -55,8 +55,8 @@ export class LiveView {
     this.title = el("h1", { title: this.session.title }, this.session.title);
     this.stage = el("div", { class: "stage" });
     this.sensorList = new SensorList();
-    this.charts = JOINTS.map((joint) => new ChartPanel(joint));
-    this.curves = el("div", { class: "curves" }, ...this.charts.map((chart) => chart.node));
+    this.views = el("div", { class: "views", role: "group", "aria-label": "View from" });
+    this.curves = el("div", { class: "curves" });
     this.strip = new PhaseStrip();
     this.counter = new RepetitionCounter();
     this.strides = el("section", { class: "panel numbers-panel", "aria-label": "Numbers" }, this.numbers.node);
@@ -77,39 +77,31 @@ export class LiveView {
       ),
       this.advice,
       this.warning,
-      el(
+      (this.live = el(
         "div",
         { class: "live" },
         this.strip.node,
         el(
           "section",
           { class: "panel body-panel", "aria-label": "Skeleton" },
-          this.viewButtons(),
+          this.views,
           this.stage,
           this.key,
         ),
         this.curves,
         el("div", { class: "side-column" }, this.counter.node, this.strides, this.sensorList.node),
-      ),
+      )),
     );
     const calm = matchMedia("(prefers-reduced-motion: reduce)").matches;
     this.skeleton = calm || !canDraw3d() ? new Skeleton2d(this.stage) : new Skeleton3d(this.stage);
-    for (const chart of this.charts) chart.start();
   }
 
-  viewButtons() {
-    const buttons = Object.entries(VIEWS).map(([view, name]) =>
-      el(
-        "button",
-        {
-          type: "button",
-          "aria-pressed": String(view === "side"),
-          onclick: (event) => this.look(view, event.currentTarget),
-        },
-        name,
-      ),
+  offerViews(views) {
+    const buttons = Object.entries(views).map(([view, name]) =>
+      el("button", { type: "button", onclick: (event) => this.look(view, event.currentTarget) }, name),
     );
-    return el("div", { class: "views", role: "group", "aria-label": "View from" }, ...buttons);
+    fill(this.views, ...buttons);
+    this.look(Object.keys(views)[0], buttons[0]);
   }
 
   look(view, button) {
@@ -123,15 +115,17 @@ export class LiveView {
 
   handlers = {
     session(message) {
-      this.body = message.body;
+      this.body = { ...message.body, floor_m: message.cameras[0]?.floor_m ?? null };
       this.arrange(message);
       this.segments = Object.fromEntries(message.sensors.map((sensor) => [sensor.name, sensor.segment]));
       this.link.show(message.patient);
     },
     calibration(calibration) {
       this.misplaced = calibration.misplaced;
+      this.absolute = calibration.absolute;
       this.warn();
       this.sensorList.showDatum(calibration.datum);
+      this.camera?.showCalibration(calibration);
     },
     patient(message) {
       this.link.show(message.patient);
@@ -140,6 +134,7 @@ export class LiveView {
       this.phase = pose.phase;
       this.message = pose.message;
       this.sensors = pose.sensors;
+      this.cameras = pose.cameras;
       this.heard(pose.age_s);
       say(this.elapsed, clock(pose.at_s));
       this.advise([pose.notice, pose.phase === "estimating" ? pose.message : ""].filter(Boolean).join(". "));
@@ -148,7 +143,7 @@ export class LiveView {
       const figure = this.body && figureOf(pose, this.body);
       if (figure) this.skeleton.show(figure, kneeAngles(pose));
       for (const chart of this.charts) chart.add(pose, pose.trail);
-      this.knee?.add(pose, pose.trail);
+      for (const panel of this.panels) panel.add(pose, pose.trail);
       this.strip.show(pose.at_s);
       this.numbers.onPose(pose);
       this.sensorList.show(pose.sensors, this.segments);
@@ -159,7 +154,7 @@ export class LiveView {
       this.heard(status.age_s);
     },
     gait_event(event) {
-      if (this.task === "knee_flexion") return;
+      if (this.arranged.counted) return;
       for (const chart of this.charts) chart.rolling.mark(event);
     },
     stride(stride) {
@@ -177,23 +172,37 @@ export class LiveView {
   };
 
   /** Once it is known what is worn and what is to be done: show that, and nothing that cannot be. */
-  arrange({ sensors, task }) {
+  arrange(session) {
     if (this.arranged) return;
-    this.arranged = true;
-    this.task = task;
-    this.strip.node.hidden = task !== "timed_up_and_go";
-    this.counter.node.hidden = task !== "knee_flexion";
-    this.strides.hidden = task === "knee_flexion";
-    const knees = kneesOf(sensors);
-    if (!knees) return;
-    this.knee = new KneePanel(knees);
-    this.curves.prepend(this.knee.node);
-    for (const chart of this.charts) {
-      chart.only(knees);
-      chart.node.hidden = chart.joint !== "knee_flexion";
-    }
-    this.numbers.only(knees);
-    this.showKey(knees);
+    const { charts, sides, views, counted, timed, legs, wholeBody } = (this.arranged = arrangementOf(session));
+    this.strip.node.hidden = !timed;
+    this.counter.node.hidden = !counted;
+    this.strides.hidden = counted;
+    this.sensorList.node.hidden = session.sensors.length === 0;
+    this.offerViews(views);
+    this.charts = charts.map((chart) => new ChartPanel(chart));
+    this.curves.append(...this.charts.map((chart) => chart.node));
+    for (const chart of this.charts) chart.start();
+    if (legs) this.showLegsAlone(legs);
+    if (wholeBody) this.showWholeBody(wholeBody, session.cameras);
+    this.showKey(sides);
+  }
+
+  showLegsAlone(legs) {
+    const knee = new KneePanel(legs);
+    this.panels.push(knee);
+    this.curves.prepend(knee.node);
+    this.numbers.only(legs);
+  }
+
+  showWholeBody(wholeBody, cameras) {
+    const angles = new AnglesPanel(wholeBody);
+    this.camera = new CameraPanel(cameras);
+    this.panels.push(angles, this.camera);
+    this.counter.showWholeBody(wholeBody);
+    this.sensorList.node.before(angles.node, this.camera.node);
+    this.views.append(el("span", { class: "spring" }), this.camera.chips);
+    this.live.classList.add("whole-body");
   }
 
   showKey(sides) {
@@ -218,6 +227,7 @@ export class LiveView {
       phase: this.phase,
       message: this.message,
       sensors: this.sensors,
+      cameras: this.cameras,
       segments: this.segments,
       misplaced: this.misplaced,
       silent,
@@ -231,13 +241,14 @@ export class LiveView {
     for (const chart of this.charts) chart.node.classList.toggle("stale", stale);
     this.sensorList.tick(stale);
     this.numbers.tick(stale);
-    this.knee?.tick(stale);
+    for (const panel of this.panels) panel.tick(stale);
     this.strip.node.classList.toggle("stale", stale);
   }
 
-  /** What is worn otherwise than declared, unless the estimator's own message says it and what to do. */
+  /** What is worn otherwise than declared or not calibrated, unless the estimator's own message says what to do. */
   warn() {
-    const warning = this.message ? "" : misplacedText(this.misplaced);
+    const found = [misplacedText(this.misplaced), this.absolute === false ? UNCALIBRATED : ""];
+    const warning = this.message ? "" : found.filter(Boolean).join(" ");
     say(this.warning, warning);
     this.warning.hidden = warning === "";
   }

@@ -2,7 +2,7 @@
 import { get } from "./api.js";
 import { MeanChart } from "./charts.js";
 import { el, fill } from "./dom.js";
-import { SIDES } from "./figure.js";
+import { SIDES } from "./vectors.js";
 import { PatientLink } from "./patient_link.js";
 import { PhaseTimeline, attemptsOf, phaseTable } from "./phase_timeline.js";
 import { RepetitionChart, repetitionTable } from "./repetition_report.js";

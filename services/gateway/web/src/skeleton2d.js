@@ -1,12 +1,14 @@
 // The side view on paper: without WebGL, for print, and for people who asked for less motion.
 import { svg } from "./dom.js";
-import { SIDES, kneeFan, plus, times } from "./figure.js";
+import { kneeFan } from "./figure.js";
 import { GHOST, INVALID, PELVIS, SIDE_COLOUR } from "./palette.js";
+import { PaperTrunk } from "./paper_trunk.js";
 import { Stage } from "./stage.js";
 import { degrees, number } from "./units.js";
+import { SIDES, plus, times } from "./vectors.js";
 
-/** px per m in standing and in sitting, for a whole body and for legs alone. */
-const SCALES = { body: [285, 285], legs: [330, 300] };
+/** px per m in standing and in sitting: of a body, of one that lifts its arms in a room, of legs alone. */
+const SCALES = { body: [285, 285], room: [205, 205], legs: [330, 300] };
 const WIDTH = 380;
 const FLOOR = 428;
 const FAN_M = 0.17;
@@ -21,7 +23,7 @@ export class Skeleton2d {
     this.root = svg("svg", {
       viewBox: `0 0 ${WIDTH} 450`,
       role: "img",
-      "aria-label": "Stick figure of the legs",
+      "aria-label": "Stick figure",
       class: "paper",
     });
     this.seat = this.add("rect", { fill: GHOST, rx: 4 });
@@ -29,6 +31,7 @@ export class Skeleton2d {
     this.trunk = this.line(GHOST, 10);
     this.legs = Object.fromEntries(SIDES.map((side) => [side, this.leg(side)]));
     this.pelvis = this.line(PELVIS, 12);
+    this.upper = new PaperTrunk(this.root);
     host.append(this.root);
   }
 
@@ -75,11 +78,14 @@ export class Skeleton2d {
     const now = performance.now() / 1000;
     this.stage.follow(figure, Math.min(0.1, now - (this.drawn ?? now)));
     this.drawn = now;
-    const [standing, sitting] = figure.whole ? SCALES.body : SCALES.legs;
+    const [standing, sitting] = SCALES[figure.inRoom ? "room" : figure.whole ? "body" : "legs"];
     this.scale = standing + (sitting - standing) * this.stage.sitting;
     const at = (name) => (figure.points[name] ? this.project(figure.points[name]) : null);
     draw(this.trunk, at("pelvis_top"), at("neck"));
-    draw(this.pelvis, this.view === "side" ? at("pelvis_top") : at("hip_left"), at("pelvis_top") && at("hip_right"));
+    const across = figure.inRoom || this.view !== "side";
+    const known = figure.inRoom || at("pelvis_top");
+    draw(this.pelvis, across ? at("hip_left") : at("pelvis_top"), known && at("hip_right"));
+    this.upper.show(figure, at, this.scale);
     for (const side of SIDES) {
       const leg = this.legs[side];
       draw(leg.thigh, at(`hip_${side}`), at(`knee_${side}`));
@@ -126,9 +132,10 @@ export class Skeleton2d {
   project([x, y, z]) {
     const cos = Math.cos(this.stage.heading);
     const sin = Math.sin(this.stage.heading);
-    const forward = x * cos - z * sin - this.stage.centre;
-    const right = x * sin + z * cos;
-    const across = { side: forward, front: -right, back: right }[this.view];
+    const [fromX, fromZ] = this.stage.standpoint;
+    const forward = (x - fromX) * cos - (z - fromZ) * sin - this.stage.centre;
+    const right = (x - fromX) * sin + (z - fromZ) * cos;
+    const across = { side: forward, front: -right, back: right, mirror: right }[this.view];
     return [WIDTH / 2 + across * this.scale, FLOOR - (y + 0.05 - this.stage.ground) * this.scale];
   }
 

@@ -16,17 +16,21 @@ import {
 } from "three";
 import { OrbitControls } from "three/examples/jsm/controls/OrbitControls.js";
 
+import { BONES, HEAD_RADIUS_M, JOINTS } from "./bones.js";
 import { KneeLabels } from "./knee_labels.js";
-import { SIDES, between, kneeFan } from "./figure.js";
+import { between, kneeFan } from "./figure.js";
 import { GHOST, INVALID, SIDE_COLOUR } from "./palette.js";
-import { BONES, Fan, HEAD, JOINTS, Seat, letter, solid, span } from "./solids.js";
+import { Fan, Seat, letter, solid, span } from "./solids.js";
 import { Stage } from "./stage.js";
+import { SIDES } from "./vectors.js";
 
-const DIRECTIONS = { side: [0, 0.07, 1], front: [1, 0.07, 0], back: [-1, 0.07, 0] };
+const DIRECTIONS = { side: [0, 0.07, 1], front: [1, 0.07, 0], back: [-1, 0.07, 0], mirror: [1, 0.07, 0] };
 const VIEW_ANGLE_DEG = 30;
-/** What fits into the picture: a whole body, or legs alone, which need more width to be stretched out in sitting. m */
+/** What fits into the picture: a body, one that lifts its arms in a room, or legs alone, which need more width to be
+ * stretched out in sitting. m */
 const FRAMES = {
   body: { height: 1.94, width: 1.3, middle: 0.8, seatedWidth: 1.3, seatedRise: 0 },
+  room: { height: 2.1, width: 1.66, middle: 0.92, seatedWidth: 1.66, seatedRise: 0 },
   legs: { height: 1.2, width: 1.18, middle: 0.46, seatedWidth: 1.28, seatedRise: 0.13 },
 };
 const FRAME_S = 0.05;
@@ -81,7 +85,7 @@ export class Skeleton3d {
       ...joint,
       mesh: solid(new SphereGeometry(joint.radius, 24, 18), joint),
     }));
-    this.head = solid(new SphereGeometry(HEAD.radius, 28, 20), { colour: GHOST });
+    this.head = solid(new SphereGeometry(HEAD_RADIUS_M, 28, 20), { colour: GHOST });
     this.letters = SIDES.map((side) => ({ side, sprite: letter(side === "left" ? "L" : "R", SIDE_COLOUR[side]) }));
     this.fans = SIDES.map((side) => ({ side, fan: new Fan(SIDE_COLOUR[side]) }));
     this.body.add(
@@ -93,7 +97,7 @@ export class Skeleton3d {
     this.body.visible = false;
   }
 
-  /** Side, front or back view. */
+  /** Side, front or back view, or the front as the patient sees herself in a mirror. */
   look(from) {
     this.view = from;
     const { middle } = this.frameOf;
@@ -126,7 +130,7 @@ export class Skeleton3d {
   /** The newest figure; drawn over the next frame's time from where the last one was. `angles` are of its knees, rad. */
   show(figure, angles = {}) {
     const now = performance.now() / 1000;
-    const frame = figure.whole ? FRAMES.body : FRAMES.legs;
+    const frame = figure.inRoom ? FRAMES.room : figure.whole ? FRAMES.body : FRAMES.legs;
     if (frame !== this.frameOf) {
       this.frameOf = frame;
       this.look(this.view);
@@ -188,7 +192,9 @@ export class Skeleton3d {
     const { points, valid } = figure;
     // The body is turned back by the slow heading, so that "side" stays side when the patient turns round.
     this.body.rotation.y = -this.stage.heading;
-    this.body.position.set(-this.stage.centre, 0.05 - this.stage.ground, 0);
+    this.body.scale.z = this.view === "mirror" ? -1 : 1;
+    const [x, z] = this.stage.standpoint;
+    this.body.position.set(-this.stage.centre - x, 0.05 - this.stage.ground, -z * this.body.scale.z);
     this.seat.place(this.stage.seatHeight(figure), -this.stage.centre);
     for (const { mesh, from, to } of this.bones) {
       mesh.visible = from in points && to in points;
@@ -201,13 +207,11 @@ export class Skeleton3d {
     for (const { bone, mesh, colour } of [...this.bones, ...this.joints]) {
       if (bone !== null) mesh.material.color.set(valid[bone] ? colour : INVALID);
     }
-    this.head.visible = "neck" in points;
-    if (this.head.visible) this.head.position.fromArray(points.neck).y += HEAD.above_neck_m;
+    this.head.visible = "head" in points;
+    if (this.head.visible) this.head.position.fromArray(points.head);
     for (const { side, sprite } of this.letters) {
-      sprite.visible = figure.sides.includes(side);
-      if (!sprite.visible) continue;
-      const [x, y, z] = points[`toe_${side}`];
-      sprite.position.set(x + 0.08, y + 0.03, z);
+      sprite.visible = `letter_${side}` in points;
+      if (sprite.visible) sprite.position.fromArray(points[`letter_${side}`]);
     }
     for (const { side, fan } of this.fans) {
       const angle = figure.whole ? undefined : this.angles[side];

@@ -14,45 +14,9 @@ import {
   Vector3,
 } from "three";
 
-import { SIDES } from "./figure.js";
-import { GHOST, PELVIS, SIDE_COLOUR } from "./palette.js";
+import { GHOST } from "./palette.js";
 
 const UP = new Vector3(0, 1, 0);
-
-// Radii in m at the upper and lower end. `bone` names the segment whose validity counts; null is not measured.
-export const BONES = [
-  ...SIDES.flatMap((side) => [
-    {
-      from: `hip_${side}`,
-      to: `knee_${side}`,
-      radii: [0.058, 0.042],
-      bone: `thigh_${side}`,
-      colour: SIDE_COLOUR[side],
-    },
-    {
-      from: `knee_${side}`,
-      to: `ankle_${side}`,
-      radii: [0.044, 0.026],
-      bone: `shank_${side}`,
-      colour: SIDE_COLOUR[side],
-    },
-    { from: `ankle_${side}`, to: `toe_${side}`, radii: [0.026, 0.02], bone: null, colour: GHOST },
-    { from: "pelvis_top", to: `hip_${side}`, radii: [0.048, 0.048], bone: "pelvis", colour: PELVIS },
-  ]),
-  { from: "hip_left", to: "hip_right", radii: [0.048, 0.048], bone: "pelvis", colour: PELVIS },
-  { from: "neck", to: "pelvis_top", radii: [0.085, 0.06], bone: null, colour: GHOST },
-];
-export const JOINTS = [
-  ...SIDES.flatMap((side) => [
-    { at: `hip_${side}`, radius: 0.058, bone: `thigh_${side}`, colour: SIDE_COLOUR[side] },
-    { at: `knee_${side}`, radius: 0.0445, bone: `shank_${side}`, colour: SIDE_COLOUR[side] },
-    { at: `ankle_${side}`, radius: 0.027, bone: `shank_${side}`, colour: SIDE_COLOUR[side] },
-    { at: `toe_${side}`, radius: 0.02, bone: null, colour: GHOST },
-  ]),
-  { at: "pelvis_top", radius: 0.049, bone: "pelvis", colour: PELVIS },
-  { at: "neck", radius: 0.085, bone: null, colour: GHOST },
-];
-export const HEAD = { above_neck_m: 0.2, radius: 0.095 };
 
 const SEAT = { depth: 0.42, width: 0.4, behind: 0.12 };
 const FAN = { edge: 0.162, radius: 0.172, inner: 0.13, outer: 0.205 };

@@ -1,9 +1,15 @@
 // Where the figure stands and how it is turned for the eye: slow, so that the view stays calm.
-import { minus, thighTilt } from "./figure.js";
+import { thighTilt } from "./figure.js";
+import { floorUnder, standpointOf } from "./room_figure.js";
+import { minus } from "./vectors.js";
 
 const RADIANS = Math.PI / 180;
 const SITS = { from: 55 * RADIANS, until: 42 * RADIANS };
 const SEAT_UNDER_HIP_M = 0.07;
+/** Height of an ankle's joint centre over the floor, as drawn and in a room. */
+const ANKLE_M = { drawn: 0.05, inRoom: 0.09 };
+/** How far a person may step before the view goes along. */
+const LEEWAY_M = 0.15;
 
 const share = (elapsed_s, slowness_s) => 1 - Math.exp(-elapsed_s / slowness_s);
 const ramp = (value, low, high) => Math.min(1, Math.max(0, (value - low) / (high - low)));
@@ -15,12 +21,18 @@ export class Stage {
     this.heading = null;
     this.ground = null;
     this.centre = 0;
+    /** Where a body in a room stands: x, z. */
+    this.standpoint = [0, 0];
     this.seated = false;
     /** 0 standing, 1 sitting, smooth: how far the view has gone over to the other. */
     this.sitting = 0;
   }
 
   follow(figure, elapsed_s) {
+    if (figure.inRoom) {
+      this.followInRoom(figure, elapsed_s);
+      return;
+    }
     const tilt = thighTilt(figure);
     const floor = floorOf(figure, tilt);
     const centre = figure.whole ? 0 : centreOf(figure);
@@ -39,6 +51,20 @@ export class Stage {
     // With the thigh as in sitting down, up quickly.
     const slowness_s = 4 - 3.75 * ramp(tilt, 35 * RADIANS, 60 * RADIANS);
     this.ground = floor < this.ground ? floor : this.ground + (floor - this.ground) * share(elapsed_s, slowness_s);
+  }
+
+  /** A camera sees feet roughly: floor and place are followed slowly, either way. */
+  followInRoom(figure, elapsed_s) {
+    const first = this.heading === null;
+    this.heading = figure.heading;
+    const floor = floorUnder(figure, ANKLE_M.inRoom) + ANKLE_M.drawn;
+    this.ground = first ? floor : this.ground + (floor - this.ground) * share(elapsed_s, 1.5);
+    this.standpoint = standpointOf(figure).map((place, axis) => {
+      if (first) return place;
+      const beyond = place - this.standpoint[axis];
+      const drag = Math.sign(beyond) * Math.max(0, Math.abs(beyond) - LEEWAY_M);
+      return this.standpoint[axis] + drag + (beyond - drag) * share(elapsed_s, 3);
+    });
   }
 
   /** Height of the seat over the floor; null while the person does not sit. */

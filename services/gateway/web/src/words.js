@@ -15,6 +15,12 @@ export function jointName(name) {
   return [words.charAt(0).toUpperCase() + words.slice(1), side];
 }
 
+/** Names that end in a direction, not in a side. */
+const DIRECTED = { trunk_lean_right: "Trunk lean to the right" };
+
+/** Name of an angle whose side is said elsewhere, or of a movement. */
+export const angleTitle = (name) => DIRECTED[name] ?? jointName(name)[0];
+
 const METRICS = {
   stance_fraction: "Stance",
   knee_flexion_peak_swing: "Peak knee flexion in swing",
@@ -118,7 +124,37 @@ export const SENSOR_WORDS = {
 };
 
 /** What a person is asked to do. */
-export const TASKS = { walk: "Walk", timed_up_and_go: "Timed up and go", knee_flexion: "Knee bending" };
+export const TASKS = {
+  walk: "Walk",
+  timed_up_and_go: "Timed up and go",
+  knee_flexion: "Knee bending",
+  squat: "Squat",
+  stepping: "Stepping on the spot",
+  trunk_tilt_sagittal: "Trunk tilt, forward",
+  trunk_tilt_frontal: "Trunk tilt, to the side",
+};
+
+/** Depth cameras. */
+export const CAMERAS = { kinect_v2: "Kinect v2", azure_kinect: "Azure Kinect", other: "Depth camera" };
+
+/** What a camera's state means to a therapist. */
+export function cameraWord({ state, people }) {
+  if (state === "missing") return { word: "No pictures", tone: "lost" };
+  if (state === "stuck") return { word: "Picture stands still", tone: "check" };
+  if (state === "unused") return { word: "Not used", tone: "done" };
+  if (people === 0) return { word: "Nobody in view", tone: "check" };
+  if (people > 1) return { word: `${people} people in view`, tone: "check" };
+  if (state === "rejected") return { word: "Partly covered", tone: "check" };
+  if (state === "calibrating") return { word: "Calibrating", tone: "wait" };
+  return { word: "Good", tone: "good" };
+}
+
+/** A second person in view is no trouble by itself: one is followed. */
+const seesNobody = ({ state, people }) =>
+  ["missing", "stuck", "rejected"].includes(state) || (people === 0 && state !== "unused");
+
+/** What to do about angles that refer to no known posture. */
+export const UNCALIBRATED = "Angles are uncalibrated: stand upright and still for a second.";
 
 /** The parts of a timed up and go, in order. */
 export const PHASES = {
@@ -170,7 +206,7 @@ export const STALE_S = 1;
 /**
  * The one word for a running session, worst thing first.
  * @param {{age_s: number|null, phase: string|null, message: string|null, sensors: {sensor: string, state: string}[],
- *   segments: Record<string, string>, misplaced: Record<string, string[]>, silent: string[], heard: boolean}} now
+ *   cameras: {state: string, people: number}[], segments: Record<string, string>, misplaced: Record<string, string[]>, silent: string[], heard: boolean}} now
  * @returns {{word: string, tone: "lost"|"check"|"wait"|"good", light: string}}
  */
 export function stateOf(now) {
@@ -182,7 +218,7 @@ function calibratingStep(message) {
   return message ? message.charAt(0).toLowerCase() + message.slice(1) : "stand still";
 }
 
-function judge({ age_s, phase, message, sensors, segments, misplaced, silent, heard }) {
+function judge({ age_s, phase, message, sensors, cameras, segments, misplaced, silent, heard }) {
   const estimating = !silent.includes("estimation");
   if (age_s !== null && age_s > STALE_S) {
     if (heard && !estimating && !silent.includes("archive")) {
@@ -202,6 +238,8 @@ function judge({ age_s, phase, message, sensors, segments, misplaced, silent, he
       word: `Check ${segmentName(segments[doubtful.sensor] ?? doubtful.sensor).toLowerCase()} sensor`,
       tone: "check",
     };
+  const away = (cameras ?? []).find(seesNobody);
+  if (away) return cameraWord(away);
   const [worst] = foundMisplaced(misplaced);
   if (worst) return { word: MISPLACED[worst.what].word(worst.side), tone: "check" };
   if (phase !== "estimating") return { word: `Calibrating - ${calibratingStep(message)}`, tone: "wait" };

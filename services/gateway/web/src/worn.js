@@ -1,5 +1,5 @@
 // What is worn decides what a page shows: what can not be known is absent, not empty.
-import { SIDES } from "./figure.js";
+import { SIDES } from "./vectors.js";
 
 /**
  * Sides of which the knee, and little else, is measured: the sensors are on legs alone. Null with a pelvis or trunk.
