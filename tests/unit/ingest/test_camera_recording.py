@@ -87,7 +87,7 @@ def test_a_frame_without_anybody_is_a_frame(scene):
     source = scene.opened()
     batch = frames(source)[7]
     assert (batch.body, batch.people) == ([None], [0])
-    assert set(batch.position[0]) == {None} if None in batch.position[0] else False
+    assert all(position is None for position in batch.position[0])
     assert set(batch.state[0]) == {TrackingState.NOT_TRACKED}
     assert len(frames(source)) == 60
     assert source.rejections() == []
