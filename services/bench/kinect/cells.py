@@ -1,5 +1,6 @@
 """The 34 cells of table 1 of Colombel et al.: angles of interest of each task, and what was published for them."""
 
+from collections.abc import Sequence
 from typing import NamedTuple
 
 import numpy as np
@@ -68,3 +69,9 @@ def mean_cells(trials: list[list[Cell]]) -> list[Cell]:
         for cell in cells:
             grouped.setdefault((cell.task, cell.angle), []).append(cell)
     return [Cell(*key, *np.mean([cell[2:] for cell in cells], axis=0).tolist()) for key, cells in grouped.items()]
+
+
+def summary(cells: Sequence[Cell]) -> tuple[float, float, float]:
+    """Mean RMSD and zero-mean RMSD, deg, and correlation."""
+    rmsd, zero_mean, correlation = (float(np.mean([cell[i] for cell in cells])) for i in (2, 3, 4))
+    return rmsd, zero_mean, correlation

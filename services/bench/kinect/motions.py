@@ -9,11 +9,11 @@ from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.ndimage import uniform_filter1d
 
-from services.biomech.whole_body.model import CENTRE_NAMES, WholeBodyModel
+from services.biomech.whole_body.model import WholeBodyModel
 from services.biomech.whole_body.pinocchio_whole_body import PinocchioWholeBody
 from services.ingest.data import find_data
+from services.ingest.synthetic.whole_body.body import foothold
 from services.ingest.synthetic.whole_body.manners import MANNERS, SQUAT, STEPS, Manner, squat
 from services.ingest.synthetic.whole_body.people import Person
 from services.ingest.synthetic.whole_body.programme import perform, slow_noise
@@ -38,6 +38,7 @@ class Trial(NamedTuple):
     q: Array  # (n, 25) m and rad
     centres: Array  # (n, 15, 3) m
     carriers: Array  # (n, 15, 3, 3) R_world_from_segment of what carries each centre
+    repetition: Array  # (n,) number from 1, 0 in none
 
 
 @cache
@@ -82,26 +83,16 @@ RECORDED: dict[int, Manner] = {**MANNERS, SQUAT: partial(squat, recorded_squat)}
 def trial(who: Person, task: int) -> Trial:
     """A person's trial, always the same. Raises MissingFile without the recorded squats."""
     rng = np.random.default_rng([who.number, task, 7])
-    angles = perform(who, task, rng, manners=RECORDED).angles
+    angles, repetition, _ = perform(who, task, rng, manners=RECORDED)
     n = len(angles)
     bends = np.radians(DRIFT_DEG * slow_noise(rng, n, 2, 0.3))
     body = PinocchioWholeBody(WholeBodyModel(who.trunk_joint), who.lengths, supple=True)
     q = np.concatenate([np.zeros((n, 3)), angles], axis=1)
     frames = [body.supple_frames(*pair) for pair in zip(q, bends, strict=True)]
     centres, carriers = np.array([f[0] for f in frames]), np.array([f[1] for f in frames])
-    base = -_feet(centres, task) + np.array([0.0, HEIGHT, 0.0])
+    base = -foothold(centres, lowest=task == STEPS) + np.array([0.0, HEIGHT, 0.0])
     sway = slow_noise(rng, n, 2) * 0.006
     base[:, 0] += sway[:, 0]
     base[:, 2] += sway[:, 1]
     q[:, :3] = base
-    return Trial(task, q, centres + base[:, None, :], carriers)
-
-
-def _feet(centres: Array, task: int) -> Array:
-    """(n, 3) the point that stays on its place: the middle of the ankles, in steps the lower one's track."""
-    right, left = (centres[:, CENTRE_NAMES.index(name)] for name in ("ankle_right", "ankle_left"))
-    if task != STEPS:
-        return np.asarray((right + left) / 2.0)
-    higher = np.clip((right[:, 1] - left[:, 1]) / 0.02, -30.0, 30.0)
-    share = uniform_filter1d(1.0 / (1.0 + np.exp(higher)), 5)[:, None]
-    return np.asarray(share * (right - right[0]) + (1.0 - share) * (left - left[0]) + (right[0] + left[0]) / 2.0)
+    return Trial(task, q, centres + base[:, None, :], carriers, repetition)

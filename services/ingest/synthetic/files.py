@@ -7,9 +7,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from schemas.session import SensorDescription, SessionDescription, WalkPath
+from services.ingest.errors import InvalidOption
 from services.ingest.manifest import FILE_NAME
+from services.ingest.synthetic.block import Block
 from services.ingest.synthetic.motions import parse_motion
-from services.ingest.synthetic.session import Block
 
 TRUTH_FILE = "truth.csv"
 _IMU_HEADER = ["time_s", "gyr_x", "gyr_y", "gyr_z", "acc_x", "acc_y", "acc_z"]
@@ -19,9 +20,11 @@ def write_recording(folder: Path, options: str = "", walk_path: WalkPath = "turn
     """Write the walk of `speed=1.1&seed=3`, or another motion, to a folder, which is made.
 
     `walk_path` is what the recording asks of an estimator; it does not make the walk straight. Raises SourceError for
-    an unknown motion or option.
+    an unknown motion or option, or for one before a camera alone.
     """
     source = parse_motion(motion, options)
+    if not source.description().hubs:
+        raise InvalidOption(f"synthetic:{motion} has no inertial sensors; only their samples are written as files")
     folder.mkdir(parents=True, exist_ok=True)
     blocks = list(source.samples())
     description = source.description().model_copy(update={"walk_path": walk_path})

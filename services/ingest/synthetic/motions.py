@@ -3,22 +3,41 @@
 from collections.abc import Callable
 
 from services.ingest.errors import UnknownSource
+from services.ingest.synthetic.block import SimulatedSession
 from services.ingest.synthetic.knee_flexion import SyntheticKnee
 from services.ingest.synthetic.march import SyntheticMarch
 from services.ingest.synthetic.parameters import KneeParameters, MarchParameters, TugParameters, WalkParameters
-from services.ingest.synthetic.session import SyntheticSession
 from services.ingest.synthetic.tug import SyntheticTug
 from services.ingest.synthetic.walk import SyntheticWalk
+from services.ingest.synthetic.whole_body.parameters import (
+    SquatParameters,
+    StepsParameters,
+    TaskParameters,
+    TiltAsideParameters,
+    TiltForwardParameters,
+)
 
-MOTIONS: dict[str, Callable[[str], SyntheticSession]] = {
+
+def _task(parameters: TaskParameters) -> SimulatedSession:
+    # The body's kinematics bring a compiler along, which an ingest without such a session does without.
+    from services.ingest.synthetic.whole_body.exercise import SyntheticTask
+
+    return SyntheticTask(parameters)
+
+
+MOTIONS: dict[str, Callable[[str], SimulatedSession]] = {
     "walk": lambda options: SyntheticWalk(WalkParameters.parse(options)),
     "march": lambda options: SyntheticMarch(MarchParameters.parse(options)),
     "knee": lambda options: SyntheticKnee(KneeParameters.parse(options)),
     "tug": lambda options: SyntheticTug(TugParameters.parse(options)),
+    "squat": lambda options: _task(SquatParameters.parse(options)),
+    "steps": lambda options: _task(StepsParameters.parse(options)),
+    "tilt_forward": lambda options: _task(TiltForwardParameters.parse(options)),
+    "tilt_aside": lambda options: _task(TiltAsideParameters.parse(options)),
 }
 
 
-def parse_motion(name: str, options: str) -> SyntheticSession:
+def parse_motion(name: str, options: str) -> SimulatedSession:
     """The session of a motion with options such as `speed=1.1&seed=3`. Raises SourceError."""
     if name not in MOTIONS:
         known = " and ".join(f"synthetic:{motion}" for motion in MOTIONS)

@@ -3,7 +3,6 @@
 import math
 from abc import ABC, abstractmethod
 from collections.abc import Iterable, Iterator
-from dataclasses import dataclass
 from functools import cached_property
 
 import numpy as np
@@ -12,6 +11,7 @@ from scipy.optimize import brentq
 
 from schemas.session import Anthropometry, HubDescription, ReferenceChannel, SessionDescription
 from schemas.vocabulary import LOWER_BODY, Side, Task
+from services.ingest.synthetic.block import Block
 from services.ingest.synthetic.gait import Gait, Strides, WalkingBody
 from services.ingest.synthetic.jets import Array, Jet
 from services.ingest.synthetic.parameters import SessionParameters
@@ -50,14 +50,6 @@ _MISWORN_IN_WORDS = {
 }
 
 
-@dataclass(frozen=True)
-class Block:
-    """Consecutive samples of every sensor in the order of the description, and the truth at the same instants."""
-
-    sensors: list[ImuTrack]
-    reference: ReferenceTrack
-
-
 class SyntheticSession(ABC):
     """A person who moves in strides and wears sensors.
 
@@ -75,6 +67,7 @@ class SyntheticSession(ABC):
         self.parameters = parameters
         self.timeline = timeline
         self.gait = gait
+        self.reference_hz = parameters.rate
         self.mounts: list[Mount] = mounts(parameters)
 
     @abstractmethod

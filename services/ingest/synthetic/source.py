@@ -4,22 +4,24 @@ from collections.abc import Iterator
 from itertools import chain
 
 from schemas.health import Rejection
-from schemas.session import SessionDescription
-from schemas.signals import IMU
+from schemas.session import CameraDescription, SessionDescription
+from schemas.signals import IMU, SKELETON
 from services.flow.message import Stream
 from services.ingest.driver import SourceMessage
 from services.ingest.identity import Identity
+from services.ingest.skeleton import RoomFrames, skeleton_batch
+from services.ingest.synthetic.block import Block, SimulatedSession, SkeletonTrack
 from services.ingest.synthetic.motions import parse_motion
-from services.ingest.synthetic.session import HUB, Block, SyntheticSession
 from services.ingest.tracks import hub_messages, in_order, reference_messages
 
 
 class SyntheticSource:
     """Samples of a synthetic session with its truth beside them."""
 
-    def __init__(self, session: SyntheticSession, identity: Identity) -> None:
+    def __init__(self, session: SimulatedSession, identity: Identity) -> None:
         self._session = session
         self._identity = identity
+        self._described = session.description()
 
     def describe(self) -> SessionDescription:
         """The session, with what the operator chose."""
@@ -35,12 +37,24 @@ class SyntheticSource:
         return []
 
     def _block_messages(self, block: Block) -> Iterator[SourceMessage]:
-        parameters = self._session.parameters
-        tick_ns = round(1e9 / parameters.rate)
-        streams = [hub_messages(Stream(IMU, HUB), block.sensors, tick_ns)]
-        if parameters.truth:
+        description = self._described
+        tick_ns = round(1e9 / self._session.reference_hz)
+        streams = [hub_messages(Stream(IMU, hub.name), block.sensors, tick_ns) for hub in description.hubs]
+        if block.skeleton is not None:
+            streams += [_skeleton_messages(camera, block.skeleton) for camera in description.cameras]
+        if description.reference:
             streams.append(reference_messages(block.reference, tick_ns))
         return in_order(streams)
+
+
+def _skeleton_messages(camera: CameraDescription, track: SkeletonTrack) -> Iterator[SourceMessage]:
+    """One message a frame."""
+    joints = tuple(camera.joints)
+    for k, captured_ns in enumerate(track.captured_ns.tolist()):
+        body = int(track.body[k])
+        frames = RoomFrames(joints, track.position[k : k + 1], track.state[k : k + 1], 0, 0)
+        batch = skeleton_batch([captured_ns], [body or None], [int(track.people[k])], frames)
+        yield SourceMessage(Stream(SKELETON, camera.name), captured_ns, batch)
 
 
 def open_synthetic(what: str, identity: Identity) -> SyntheticSource:

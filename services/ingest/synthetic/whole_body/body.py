@@ -4,8 +4,9 @@ from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
+from scipy.ndimage import uniform_filter1d
 
-from schemas.vocabulary import WHOLE_BODY
+from schemas.vocabulary import WHOLE_BODY, JointCentre
 from services.biomech.whole_body.model import CENTRE_NAMES, DOF, WholeBodyModel
 from services.ingest.synthetic.rigid import rotation_about
 
@@ -42,6 +43,16 @@ def place(body: WholeBodyModel, q: Array, lengths: Array, bends: Array) -> Place
         lever = _along(tree.centre_length[m], tree.centre_along[m], tree.centre_share[m], lengths)
         centres[:, m] = origins[carrier] + rotations[carrier] @ lever
     return Placed(centres, np.moveaxis(rotations[tree.carrier], 0, 1))
+
+
+def foothold(centres: Array, *, lowest: bool) -> Array:
+    """(n, 3) the point that stays on its place: the middle of the ankles or, with `lowest`, the lower one's track."""
+    right, left = (centres[:, CENTRE_NAMES.index(name)] for name in (JointCentre.ANKLE_RIGHT, JointCentre.ANKLE_LEFT))
+    if not lowest:
+        return np.asarray((right + left) / 2.0)
+    higher = np.clip((right[:, 1] - left[:, 1]) / 0.02, -30.0, 30.0)
+    share = uniform_filter1d(1.0 / (1.0 + np.exp(higher)), 5)[:, None]
+    return np.asarray(share * (right - right[0]) + (1.0 - share) * (left - left[0]) + (right[0] + left[0]) / 2.0)
 
 
 def _along(length: int, axis: int, share: float, lengths: Array) -> Array:
