@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from services.biomech.whole_body.constrained_ekf import bounds_of
-from services.biomech.whole_body.kernels.tables import COORDINATES, SEEN
+from services.biomech.whole_body.kernels.tables import BOUNDED, COORDINATES, FIRST_BOUNDED, SEEN
 from services.biomech.whole_body.model import MODEL, WholeBodyModel
 from services.biomech.whole_body.parameters import ProcessNoise
 from services.biomech.whole_body.presets import PUBLISHED_VARIANCE
@@ -34,8 +34,7 @@ class ColombelCekf:
         n = SEEN + 2 * COORDINATES
         self.x, self.P = np.zeros(n), np.eye(n)
         self.x[:SEEN] = np.concatenate([start.q, start.lengths])
-        bounds = bounds_of(start, constrained=True)
-        self._column, self._low, self._high = bounds.column, bounds.low, bounds.high
+        self._low, self._high = bounds_of(start, constrained=True)
 
     def advance(self, dt_s: float, centres: Array, state: NDArray[np.int64]) -> None:
         """Predict over dt_s and fuse centres (15, 3) m; without a complete frame it only predicts."""
@@ -58,8 +57,9 @@ class ColombelCekf:
             return
         # C' (C C')^-1 (C x - d) of the violated rows is the violation itself, in the place of its state.
         violation = np.zeros(len(self.x))
-        value = self.x[self._column]
-        violation[self._column] = np.maximum(value - self._high, 0.0) - np.maximum(self._low - value, 0.0)
+        bounded = slice(FIRST_BOUNDED, FIRST_BOUNDED + BOUNDED)
+        value = self.x[bounded]
+        violation[bounded] = np.maximum(value - self._high, 0.0) - np.maximum(self._low - value, 0.0)
         gain = gain - np.outer(violation, weighted) / (v @ weighted)
         self.x = self.x + gain @ v
         self.P = (np.eye(len(self.x)) - gain @ H) @ self.P

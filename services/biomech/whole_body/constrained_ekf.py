@@ -13,15 +13,19 @@ from numpy.typing import NDArray
 
 from services.biomech.whole_body.kernels.frame import advance
 from services.biomech.whole_body.kernels.tables import (
+    BELIEF,
     BIASES,
     CENTRES,
     COORDINATES,
+    FIRST_BOUNDED,
     SEEN,
+    WORK,
     Bounds,
-    Columns,
-    Noise,
-    Priors,
-    empty_update,
+    Table,
+    aligned,
+    covariance_room,
+    full_covariance,
+    table,
 )
 from services.biomech.whole_body.model import MODEL, WholeBodyModel
 from services.biomech.whole_body.parameters import (
@@ -79,27 +83,24 @@ class WholeBodyEkf:
         self.biased = start.bias_std is not None
         self.velocity = SEEN + (BIASES if self.biased else 0)
         n = self.velocity + 2 * COORDINATES
-        self.x = np.zeros(n)
-        self._padded = np.zeros((n, n + (-n) % 8))
-        self.P = self._padded[:, :n]
+        self.x, self._kept = aligned(n), covariance_room(n)
         self.x[:SEEN] = np.concatenate([start.q, start.lengths])
         self._start_covariance()
-        camera = settings.camera
-        self._noise = Noise(*camera.per_centre(), camera.inferred, camera.stretch, camera.gate)
-        self._bounds = bounds_of(start, constrained=settings.constrained)
-        self._wide = bounds_of(start, constrained=settings.constrained)
-        for limit, outwards in ((self._wide.low, -1.0), (self._wide.high, 1.0)):
-            limit[: COORDINATES - 3] += outwards * settings.margin
         self.estimate = self.x.copy()
-        rest = np.concatenate([np.zeros(3), per_angle(REST_DEG)[:, 0]])
-        columns = settings.priors.columns()
-        self._priors = Priors(columns, rest[columns], settings.priors.variances())
-        self._density = settings.process.densities()
-        self._tree, self._columns = model.tree, Columns(*model.columns)
-        self._update = empty_update(self._padded.shape[1])
+        self._belief, self._work = beliefs_of(start, settings), table(WORK)
+        self._centres, self._state = np.zeros((CENTRES, 3)), np.zeros(CENTRES, dtype=np.int64)
         self.in_view_s = 0.0
         self.active = 0
         self.swapped = False
+
+    @property
+    def P(self) -> Array:
+        """(n, n) covariance, a copy."""
+        return full_covariance(self._kept)
+
+    @P.setter
+    def P(self, covariance: Array) -> None:
+        self._kept[:, : len(self.x)] = covariance
 
     def _start_covariance(self) -> None:
         start = self.start
@@ -110,8 +111,8 @@ class WholeBodyEkf:
             diagonal[SEEN : self.velocity] = np.tile(np.square(start.bias_std), CENTRES)
         diagonal[self.velocity : self.velocity + COORDINATES] = velocity
         diagonal[self.velocity + COORDINATES :] = acceleration
-        self.P[:] = np.diag(diagonal)
-        self.P[COORDINATES:SEEN, COORDINATES:SEEN] = start.length_covariance
+        self.P = np.diag(diagonal)
+        self._kept[COORDINATES:SEEN, COORDINATES:SEEN] = start.length_covariance
 
     def advance(self, dt_s: float, centres: Array, state: NDArray[np.int64]) -> None:
         """Predict over dt_s >= 0 and fuse one frame.
@@ -119,26 +120,21 @@ class WholeBodyEkf:
         centres (15, 3) m in world axes, in the order of JointCentre; state (15,) 0 not tracked, 1 inferred, 2 tracked.
         A centre that is not tracked or not finite has no row. Without any centre it only predicts.
         """
-        seen = np.where(np.isfinite(centres).all(axis=1), state, 0)
-        camera = self.settings.camera
+        self._centres[:], self._state[:] = centres, state
         share = NOMINAL_DT_S / max(dt_s, 1e-3)
-        self.swapped, self.active = advance(
-            self.x, self._padded, self.velocity, dt_s, self._density, self.settings.process.held, share,
-            np.where(seen[:, None] > 0, centres, 0.0), seen,
-            camera.swap_scale, camera.swap_most, camera.swap_share,
-            self._tree, self._columns, self._noise, self._priors, self._wide, self._bounds, self._update,
-            self.estimate,
+        count, self.swapped, self.active = advance(
+            self.x, self._kept, self.estimate, self.velocity, dt_s, share, self._centres, self._state,
+            self.model.body, self._belief, self._work,
         )  # fmt: skip
-
-        self._learn_lengths(dt_s if seen.any() else 0.0)
+        self._learn_lengths(dt_s if count else 0.0)
 
     def _learn_lengths(self, dt_s: float) -> None:
         before, self.in_view_s = self.in_view_s, self.in_view_s + dt_s
         if before < self.settings.lengths_learnt_s <= self.in_view_s:
             # D P D with D diagonal stays positive definite.
             self.x[COORDINATES:SEEN] = self.estimate[COORDINATES:SEEN]
-            self.P[COORDINATES:SEEN] *= HELD
-            self.P[:, COORDINATES:SEEN] *= HELD
+            self._kept[COORDINATES:SEEN] *= HELD
+            self._kept[:, COORDINATES:SEEN] *= HELD
 
     @property
     def q(self) -> Array:
@@ -162,29 +158,30 @@ class WholeBodyEkf:
 
     def deviations(self) -> Array:
         """(2, 22) standard deviations of the angles, rad, and their rates, rad/s."""
-        variance = np.diagonal(self.P)
+        variance = np.diagonal(self._kept)
         first = self.velocity + 3
         return np.sqrt(np.stack([variance[3:COORDINATES], variance[first : first + COORDINATES - 3]]))
 
     def distances(self) -> Array:
         """(15,) squared innovation of each centre of the last frame in variances, 3 expected; 0 without a row."""
-        distances = np.zeros(CENTRES)
-        used = self._update.used[: self._update.in_use[0]]
-        distances[used] = self._update.distance[used]
+        work, distances = self._work[0], np.zeros(CENTRES)
+        used = work["used"][: work["in_use"]]
+        distances[used] = work["distance"][used]
         return distances
 
     def evidence(self) -> tuple[int, float, float]:
         """Of the last frame's centres: how many rows, their squared innovations in variances, log det of S."""
-        squares, log_determinant = self._update.evidence
-        return 3 * int(self._update.in_use[0]), float(squares), float(log_determinant)
+        work = self._work[0]
+        return 3 * int(work["in_use"]), float(work["squares"]), float(work["log_determinant"])
 
     def settle(self) -> None:
         """After a time without frames: keep posture, lengths and biases, forget how it moved and how sure it was."""
         self.x[self.velocity :] = 0.0
         self.estimate[self.velocity :] = 0.0
-        kept = self.P[COORDINATES : self.velocity, COORDINATES : self.velocity].copy()
+        constants = slice(COORDINATES, self.velocity)
+        known = self.P[constants, constants]
         self._start_covariance()
-        self.P[COORDINATES : self.velocity, COORDINATES : self.velocity] = kept
+        self._kept[constants, constants] = known
 
     def snapshot(self) -> State:
         """Everything that changes, and the start, as JSON values; of the symmetric P the upper triangle."""
@@ -208,9 +205,9 @@ class WholeBodyEkf:
         if len(x) != n or state["start"] != self.start.packed():
             raise ValueError(f"whole-body snapshot of {len(x)} states and its start, this filter has {n} and its own")
         self.x[:], self.estimate[:] = x, unpack_array(state["estimate"])
-        upper = np.triu_indices(n)
-        self.P[upper] = unpack_array(state["P"])
-        self.P.T[upper] = self.P[upper]
+        upper = np.zeros((n, n))
+        upper[np.triu_indices(n)] = unpack_array(state["P"])
+        self.P = full_covariance(upper)
         self.in_view_s = float(state["in_view_s"])
 
     @classmethod
@@ -222,7 +219,7 @@ class WholeBodyEkf:
 
     def is_sound(self) -> bool:
         """Finite throughout."""
-        return bool(np.isfinite(self.x).all() and np.isfinite(self._padded).all())
+        return bool(np.isfinite(self.x).all() and np.isfinite(self._kept).all())
 
 
 def bounds_of(start: Start, *, constrained: bool) -> Bounds:
@@ -235,7 +232,24 @@ def bounds_of(start: Start, *, constrained: bool) -> Bounds:
     high = np.concatenate([high, (1.0 + LENGTH_RANGE) * start.lengths])
     if not constrained:
         low, high = np.full_like(low, -LONE_LIMIT), np.full_like(high, LONE_LIMIT)
-    b = len(low)
-    column = np.arange(3, 3 + b)
-    scratch = np.zeros(b, dtype=np.int64), np.zeros(b), np.zeros(b), np.zeros((b, b)), np.zeros(b)
-    return Bounds(column, low, high, *scratch)
+    return Bounds(low, high)
+
+
+def beliefs_of(start: Start, settings: FilterSettings) -> Table:
+    """(1,) BELIEF, what the kernels are told of camera, movement and person."""
+    beliefs = table(BELIEF)
+    belief, camera, priors = beliefs[0], settings.camera, settings.priors
+    belief["variance"], belief["along"] = camera.per_centre()
+    for name in ("inferred", "stretch", "gate", "swap_scale", "swap_most", "swap_share"):
+        belief[name] = getattr(camera, name)
+    belief["density"], belief["held"] = settings.process.densities(), float(settings.process.held)
+    columns = priors.columns()
+    belief["priors"] = len(columns)
+    belief["prior_column"][: len(columns)] = columns
+    belief["prior_value"][: len(columns)] = per_angle(REST_DEG)[columns - FIRST_BOUNDED, 0]
+    belief["prior_variance"][: len(columns)] = priors.variances()
+    belief["low"], belief["high"] = bounds_of(start, constrained=settings.constrained)
+    margin = np.zeros(len(belief["low"]))
+    margin[: COORDINATES - FIRST_BOUNDED] = settings.margin
+    belief["wide_low"], belief["wide_high"] = belief["low"] - margin, belief["high"] + margin
+    return beliefs

@@ -14,8 +14,20 @@ import numpy as np
 from numpy.typing import NDArray
 
 from schemas.vocabulary import WHOLE_BODY, JointCentre
-from services.biomech.whole_body.kernels.kinematics import differentiate, place
-from services.biomech.whole_body.kernels.tables import CENTRES, COORDINATES, KINEMATIC, LENGTHS, Pose, Tree, empty_pose
+from services.biomech.whole_body.kernels.kinematics import differentiate_alone, place_alone
+from services.biomech.whole_body.kernels.tables import (
+    BODY,
+    CENTRES,
+    COORDINATES,
+    KINEMATIC,
+    LENGTHS,
+    POSE,
+    Pose,
+    Table,
+    Tree,
+    pose_of,
+    table,
+)
 
 Array = NDArray[np.float64]
 
@@ -112,7 +124,7 @@ class WholeBodyModel:
 
     @cached_property
     def tree(self) -> Tree:
-        """Joint and centre tables for the kernels."""
+        """Joints and centres."""
         axes = np.array([dof.axis for dof in WHOLE_BODY], dtype=np.float64)
         axis = np.abs(axes).argmax(axis=1)
         parent = np.arange(-1, len(WHOLE_BODY) - 1)
@@ -130,25 +142,31 @@ class WholeBodyModel:
         )  # fmt: skip
 
     @cached_property
-    def columns(self) -> tuple[NDArray[np.int64], NDArray[np.int64]]:
-        """Which of the 37 columns [q, lengths] move each centre: (15, deepest) and how many (15,).
+    def body(self) -> Table:
+        """(1,) BODY, as the kernels take it.
 
-        Told by the derivative at a posture without symmetry; an axial rotation, say, never moves the end of its bone.
+        Which of the 37 columns [q, lengths] move a centre is told by the derivative at a posture without symmetry; an
+        axial rotation, say, never moves the end of its bone.
         """
-        generator = np.random.default_rng(1)
-        H = self.jacobian(generator.uniform(0.2, 0.8, COORDINATES), generator.uniform(0.2, 0.5, LENGTHS))
+        body, generator = self._untouched_body(), np.random.default_rng(1)
+        H = self._jacobian(generator.uniform(0.2, 0.8, COORDINATES), generator.uniform(0.2, 0.5, LENGTHS), body)
         touched = np.abs(H).max(axis=1) > 1e-9
-        count = touched.sum(axis=1)
-        table = np.zeros((CENTRES, count.max()), dtype=np.int64)
-        for row, used in zip(table, touched, strict=True):
+        body["moving"][0] = touched.sum(axis=1)
+        for row, used in zip(body["columns"][0], touched, strict=True):
             row[: used.sum()] = np.flatnonzero(used)
-        return table, count
+        return body
+
+    def _untouched_body(self) -> Table:
+        body = table(BODY)
+        for name, values in self.tree._asdict().items():
+            body[name][0] = values
+        return body
 
     def pose(self, q: Array, lengths: Array) -> Pose:
         """Rotations, axes, joint origins and centres, see `Pose`."""
-        pose = empty_pose()
-        place(np.ascontiguousarray(q), np.ascontiguousarray(lengths), self.tree, pose)
-        return pose
+        posed = table(POSE)
+        place_alone(np.ascontiguousarray(q), np.ascontiguousarray(lengths), self.body, posed)
+        return pose_of(posed)
 
     def centres(self, q: Array, lengths: Array) -> Array:
         """(15, 3) m, joint centres in the world."""
@@ -160,8 +178,12 @@ class WholeBodyModel:
         d(centre)/d(angle) = a x r with the joint's axis a and r from the joint to the centre; d(centre)/d(length) is
         the sum of the unit vectors, times their share, along which that length lies on the way from the root.
         """
-        pose, H = self.pose(q, lengths), np.zeros((3 * CENTRES, KINEMATIC))
-        differentiate(self.tree, pose, H)
+        return self._jacobian(q, lengths, self.body)
+
+    def _jacobian(self, q: Array, lengths: Array, body: Table) -> Array:
+        posed, H = table(POSE), np.zeros((3 * CENTRES, KINEMATIC))
+        place_alone(np.ascontiguousarray(q), np.ascontiguousarray(lengths), body, posed)
+        differentiate_alone(body, posed, H)
         return H.reshape(CENTRES, 3, KINEMATIC)[:, :, : COORDINATES + LENGTHS]
 
 

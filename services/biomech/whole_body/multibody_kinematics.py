@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 from scipy.signal import butter, filtfilt
 
 from services.biomech.whole_body.kernels.fit import fit
-from services.biomech.whole_body.kernels.tables import COORDINATES, SEEN, Bounds, empty_update
+from services.biomech.whole_body.kernels.tables import COORDINATES, SEEN, WORK, Bounds, table
 from services.biomech.whole_body.model import CENTRE_NAMES, MODEL, WholeBodyModel
 from services.biomech.whole_body.parameters import (
     LENGTH_RANGE,
@@ -137,15 +137,13 @@ def _bounds(turned: float, lengths: Array) -> Bounds:
     high[0] += turned
     low = np.concatenate([low, (1.0 - LENGTH_RANGE) * lengths])
     high = np.concatenate([high, (1.0 + LENGTH_RANGE) * lengths])
-    b = len(low)
-    scratch = np.zeros(b, dtype=np.int64), np.zeros(b), np.zeros(b), np.zeros((b, b)), np.zeros(b)
-    return Bounds(np.arange(3, 3 + b), low, high, *scratch)
+    return Bounds(low, high)
 
 
 def _free_lengths(bounds: Bounds) -> Bounds:
     """The bounds of the angles alone."""
     angles = COORDINATES - 3
-    return Bounds(bounds.column[:angles], bounds.low[:angles], bounds.high[:angles], *bounds[3:])
+    return Bounds(bounds.low[:angles].copy(), bounds.high[:angles].copy())
 
 
 def _fit(
@@ -157,7 +155,7 @@ def _fit(
     weight[state == 1] /= parameters.inferred
     angles = slice(3, COORDINATES)
     u[angles] = np.clip(u[angles], bounds.low[: COORDINATES - 3], bounds.high[: COORDINATES - 3])
-    seen, update = np.where(there[:, None], centres, 0.0), empty_update(8)
-    fit(u, free, seen, weight, value, stiffness, parameters.most_steps, bounds, model.tree, update)
-    rms = float(np.sqrt(np.mean(update.innovation[there] ** 2))) if there.any() else 0.0
+    seen, work = np.where(there[:, None], centres, 0.0), table(WORK)
+    fit(u, free, seen, weight, value, stiffness, parameters.most_steps, *bounds, model.body, work)
+    rms = float(np.sqrt(np.mean(work["innovation"][0][there] ** 2))) if there.any() else 0.0
     return Fit(u[:COORDINATES].copy(), u[COORDINATES:].copy(), rms)

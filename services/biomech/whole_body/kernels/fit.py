@@ -8,21 +8,21 @@ import numpy as np
 from services.biomech.whole_body.compiled import compiled
 from services.biomech.whole_body.kernels.kinematics import differentiate, place
 from services.biomech.whole_body.kernels.projection import project
-from services.biomech.whole_body.kernels.tables import COORDINATES, SEEN, Array, Bounds, Tree, Update
+from services.biomech.whole_body.kernels.tables import COORDINATES, SEEN, Array, Record, Table
 
 TOLERANCE = 1e-7
 """rad, m. A smaller step ends the fit."""
 
 
 @compiled
-def cost(u: Array, centres: Array, weight: Array, value: Array, stiffness: Array, tree: Tree, update: Update) -> float:
+def cost(u: Array, centres: Array, weight: Array, value: Array, stiffness: Array, body: Record, work: Record) -> float:
     """Half the weighted squared distances of the centres and of u from what it is drawn to; leaves the innovations."""
-    place(u[:COORDINATES], u[COORDINATES:SEEN], tree, update.pose)
+    place(u[:COORDINATES], u[COORDINATES:SEEN], body, work.pose)
     total = 0.0
     for m in range(centres.shape[0]):
         for i in range(3):
-            e = centres[m, i] - update.pose.centre[m, i] if weight[m] > 0.0 else 0.0
-            update.innovation[m, i] = e
+            e = centres[m, i] - work.pose.centre[m, i] if weight[m] > 0.0 else 0.0
+            work.innovation[m, i] = e
             total += weight[m] * e * e
     for k in range(SEEN):
         total += stiffness[k] * (u[k] - value[k]) ** 2
@@ -31,16 +31,16 @@ def cost(u: Array, centres: Array, weight: Array, value: Array, stiffness: Array
 
 @compiled
 def normal_equations(
-    u: Array, free: int, weight: Array, value: Array, stiffness: Array, tree: Tree, update: Update
+    u: Array, free: int, weight: Array, value: Array, stiffness: Array, body: Record, work: Record
 ) -> tuple[Array, Array]:
     """Curvature (free, free) and descent (free,) of `cost` by the first `free` unknowns."""
-    differentiate(tree, update.pose, update.H)
+    differentiate(body, work.pose, work.H)
     A, descent = np.zeros((free, free)), np.zeros(free)
-    for r in range(update.H.shape[0]):
+    for r in range(work.H.shape[0]):
         w = weight[r // 3]
         if w <= 0.0:
             continue
-        e, row = update.innovation[r // 3, r % 3], update.H[r]
+        e, row = work.innovation[r // 3, r % 3], work.H[r]
         for a in range(free):
             h = w * row[a]
             if h == 0.0:
@@ -57,17 +57,18 @@ def normal_equations(
 @compiled
 def fit(
     u: Array, free: int, centres: Array, weight: Array, value: Array, stiffness: Array, most: int,
-    bounds: Bounds, tree: Tree, update: Update,
+    low: Array, high: Array, bodies: Table, works: Table,
 ) -> tuple[float, int]:  # fmt: skip
     """Move the first `free` of u (37,) = [q, lengths] to the least `cost` within bounds; that cost and the steps.
 
     centres (15, 3) m with weight (15,) 1/m^2, 0 for none; each unknown is drawn to value (37,) with stiffness (37,).
     All bounds must lie among the free unknowns.
     """
-    now = cost(u, centres, weight, value, stiffness, tree, update)
+    body, work = bodies[0], works[0]
+    now = cost(u, centres, weight, value, stiffness, body, work)
     damping = 1e-6
     for step in range(most):
-        A, descent = normal_equations(u, free, weight, value, stiffness, tree, update)
+        A, descent = normal_equations(u, free, weight, value, stiffness, body, work)
         while True:
             damped = A.copy()
             for a in range(free):
@@ -78,9 +79,9 @@ def fit(
                 for b in range(free):
                     tried[a] += P[a, b] * descent[b]
             part = tried[:free].copy()
-            project(part, P, bounds)
+            project(part, P, low, high, work.bounds)
             tried[:free] = part
-            better = cost(tried, centres, weight, value, stiffness, tree, update)
+            better = cost(tried, centres, weight, value, stiffness, body, work)
             if better <= now or damping > 1e6:
                 break
             damping *= 10.0
@@ -90,4 +91,4 @@ def fit(
         u[:], now, damping = tried, better, max(damping / 10.0, 1e-9)
         if moved < TOLERANCE:
             return now, step + 1
-    return cost(u, centres, weight, value, stiffness, tree, update), most
+    return cost(u, centres, weight, value, stiffness, body, work), most

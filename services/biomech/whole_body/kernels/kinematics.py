@@ -3,44 +3,50 @@
 import numpy as np
 
 from services.biomech.whole_body.compiled import compiled
-from services.biomech.whole_body.kernels.tables import COORDINATES, Array, Pose, Tree
+from services.biomech.whole_body.kernels.tables import COORDINATES, Array, Record, Table
 
 
 @compiled
-def place(q: Array, lengths: Array, tree: Tree, pose: Pose) -> None:
+def place(q: Array, lengths: Array, body: Record, pose: Record) -> None:
     """Fill `pose` for coordinates q (25,) and lengths (12,)."""
     R, origin = pose.rotation, pose.origin
-    for j in range(tree.parent.size):
-        p, k, sign = tree.parent[j], tree.axis[j], tree.sign[j]
+    for j in range(body.parent.size):
+        p, k, sign = body.parent[j], body.axis[j], body.sign[j]
         s, c = np.sin(sign * q[3 + j]), np.cos(sign * q[3 + j])
         k1, k2 = (k + 1) % 3, (k + 2) % 3
-        offset = 0.0 if tree.length[j] < 0 else tree.share[j] * lengths[tree.length[j]]
+        offset = 0.0 if body.length[j] < 0 else body.share[j] * lengths[body.length[j]]
         for i in range(3):
             if p < 0:
                 along, u, v = 1.0 * (i == k), 1.0 * (i == k1), 1.0 * (i == k2)
                 origin[j, i] = q[i]
             else:
                 along, u, v = R[p, i, k], R[p, i, k1], R[p, i, k2]
-                origin[j, i] = origin[p, i] + offset * R[p, i, tree.along[j]]
+                origin[j, i] = origin[p, i] + offset * R[p, i, body.along[j]]
             pose.axis[j, i] = sign * along
             R[j, i, k] = along
             R[j, i, k1] = c * u + s * v
             R[j, i, k2] = c * v - s * u
-    for m in range(tree.carrier.size):
-        j = tree.carrier[m]
-        offset = 0.0 if tree.centre_length[m] < 0 else tree.centre_share[m] * lengths[tree.centre_length[m]]
+    for m in range(body.carrier.size):
+        j = body.carrier[m]
+        offset = 0.0 if body.centre_length[m] < 0 else body.centre_share[m] * lengths[body.centre_length[m]]
         for i in range(3):
-            pose.centre[m, i] = origin[j, i] + offset * R[j, i, tree.centre_along[m]]
+            pose.centre[m, i] = origin[j, i] + offset * R[j, i, body.centre_along[m]]
 
 
 @compiled
-def differentiate(tree: Tree, pose: Pose, H: Array) -> None:
+def place_alone(q: Array, lengths: Array, body: Table, posed: Table) -> None:
+    """`place` on tables (1,)."""
+    place(q, lengths, body[0], posed[0])
+
+
+@compiled
+def differentiate(body: Record, pose: Record, H: Array) -> None:
     """H (45, 40): d(centre) / d[translations, angles, lengths] at a placed pose; three columns stay zero."""
     H[:] = 0.0
-    for m in range(tree.carrier.size):
+    for m in range(body.carrier.size):
         x, y, z = pose.centre[m, 0], pose.centre[m, 1], pose.centre[m, 2]
-        j = tree.carrier[m]
-        length, along, share = tree.centre_length[m], tree.centre_along[m], tree.centre_share[m]
+        j = body.carrier[m]
+        length, along, share = body.centre_length[m], body.centre_along[m], body.centre_share[m]
         for i in range(3):
             H[3 * m + i, i] = 1.0
             if length >= 0:
@@ -51,8 +57,14 @@ def differentiate(tree: Tree, pose: Pose, H: Array) -> None:
             H[3 * m, 3 + j] = b * w - c * v
             H[3 * m + 1, 3 + j] = c * u - a * w
             H[3 * m + 2, 3 + j] = a * v - b * u
-            p, length = tree.parent[j], tree.length[j]
+            p, length = body.parent[j], body.length[j]
             if length >= 0:
                 for i in range(3):
-                    H[3 * m + i, COORDINATES + length] += tree.share[j] * pose.rotation[p, i, tree.along[j]]
+                    H[3 * m + i, COORDINATES + length] += body.share[j] * pose.rotation[p, i, body.along[j]]
             j = p
+
+
+@compiled
+def differentiate_alone(body: Table, posed: Table, H: Array) -> None:
+    """`differentiate` on tables (1,)."""
+    differentiate(body[0], posed[0], H)

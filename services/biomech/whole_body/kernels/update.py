@@ -1,262 +1,164 @@
-"""One frame's joint centres, all at once: at most 45 rows and the soft priors.
+"""One frame's joint centres and the soft priors, six rows at a time.
 
 W = H P, S = H W' + R = L L', and with W and y multiplied by L^-1: dx = W' y, P - W' W. That is the covariance of
-Joseph's form for the optimal gain, symmetric by construction.
+Joseph's form for the optimal gain, symmetric by construction. Noise of different centres is independent and all rows
+are linearised where the frame found the state, so that one group after the other gives what all rows at once would:
+only the innovation must know what the groups before have moved.
 """
 
 import numpy as np
 
 from services.biomech.whole_body.compiled import compiled
-from services.biomech.whole_body.kernels.kinematics import differentiate, place
-from services.biomech.whole_body.kernels.tables import (
-    COORDINATES,
-    KINEMATIC,
-    SEEN,
-    Array,
-    Columns,
-    Indices,
-    Noise,
-    Priors,
-    Tree,
-    Update,
-)
-
-
-@compiled
-def linearise(x: Array, biased: bool, centres: Array, state: Indices, tree: Tree, update: Update) -> None:
-    """Innovations (15, 3), Jacobian, and the rows of the centres that are there: state (15,) 0 none, 1 inferred, 2."""
-    place(x[:COORDINATES], x[COORDINATES:SEEN], tree, update.pose)
-    differentiate(tree, update.pose, update.H)
-    count = 0
-    for m in range(centres.shape[0]):
-        if state[m] == 0:
-            continue
-        for i in range(3):
-            bias = x[SEEN + 3 * m + i] if biased else 0.0
-            e = centres[m, i] - update.pose.centre[m, i] - bias
-            update.innovation[m, i] = e
-            update.y[3 * count + i] = e
-            for k in range(KINEMATIC):
-                update.rows[3 * count + i, k] = update.H[3 * m + i, k]
-        update.used[count] = m
-        count += 1
-    update.in_use[0] = count
-
-
-@compiled
-def doubt_bones(centres: Array, state: Indices, tree: Tree, stretch: float, update: Update) -> None:
-    """Factor 1 + (error / stretch)^2 for both ends of each bone that is seen longer or shorter than it is.
-
-    A length says so in every posture and without delay, where an innovation may also be a fast movement.
-    """
-    update.doubt[:] = 1.0
-    for m in range(centres.shape[0]):
-        b = tree.before[m]
-        if b < 0 or state[m] == 0 or state[b] == 0 or stretch <= 0.0:
-            continue
-        seen, known = 0.0, 0.0
-        for i in range(3):
-            seen += (centres[m, i] - centres[b, i]) ** 2
-            known += (update.pose.centre[m, i] - update.pose.centre[b, i]) ** 2
-        e = (np.sqrt(seen) - np.sqrt(known)) / stretch
-        update.doubt[m] += e * e
-        update.doubt[b] += e * e
-
-
-@compiled
-def project_rows(P: Array, biased: bool, columns: Columns, update: Update) -> None:
-    """W = H P: of each row, one translation, the columns that move its centre, and its own bias."""
-    W, M = update.W, P.shape[1]
-    for a in range(update.in_use[0]):
-        m = update.used[a]
-        for i in range(3):
-            own = SEEN + 3 * m + i
-            for k in range(M):
-                W[3 * a + i, k] = P[i, k]
-            if biased:
-                for k in range(M):
-                    W[3 * a + i, k] += P[own, k]
-        for c in range(3, columns.used[m]):
-            j = columns.table[m, c]
-            h0, h1, h2 = update.rows[3 * a, j], update.rows[3 * a + 1, j], update.rows[3 * a + 2, j]
-            for k in range(M):
-                p = P[j, k]
-                W[3 * a, k] += h0 * p
-                W[3 * a + 1, k] += h1 * p
-                W[3 * a + 2, k] += h2 * p
-
-
-@compiled
-def innovation_covariance(
-    biased: bool, state: Indices, tree: Tree, columns: Columns, noise: Noise, update: Update
-) -> None:
-    """S = H P H' + R. R is larger along the bone that leads to a centre, and where it is inferred."""
-    W, S, rows, turned = update.W, update.S, update.rows, update.turned
-    count = 3 * update.in_use[0]
-    for r in range(count):
-        for k in range(SEEN):
-            turned[k, r] = W[r, k]
-    for s in range(count):
-        m, line = update.used[s // 3], S[s, :count]
-        own = SEEN + 3 * m + s % 3
-        first = turned[s % 3, :count]
-        for r in range(count):
-            line[r] = first[r]
-        for c in range(3, columns.used[m]):
-            j = columns.table[m, c]
-            h, part = rows[s, j], turned[j, :count]
-            for r in range(count):
-                line[r] += h * part[r]
-        if biased:
-            for r in range(count):
-                line[r] += W[r, own]
-    for a in range(update.in_use[0]):
-        m = update.used[a]
-        factor = update.doubt[m] * (noise.inferred if state[m] == 1 else 1.0)
-        believe(a, m, tree.before[m], factor, noise, update)
-
-
-@compiled
-def believe(a: int, m: int, before: int, factor: float, noise: Noise, update: Update) -> None:
-    """Add R to the block of the a-th centre in use; beyond the gate, R grows with the square of the distance."""
-    S, centre = update.S, update.pose.centre
-    u = np.zeros(3)
-    if before >= 0:
-        u[:] = centre[m] - centre[before]
-    b = 3 * a
-    block, R = np.empty((3, 3)), np.empty((3, 3))
-    for i in range(3):
-        for k in range(3):
-            R[i, k] = factor * (noise.along[m] * u[i] * u[k] + (noise.variance[m] if i == k else 0.0))
-            block[i, k] = S[b + i, b + k]
-    e = update.innovation[m]
-    update.distance[m] = squared_length(block + R, e[0], e[1], e[2])
-    if noise.gate > 0.0 and update.distance[m] > noise.gate:
-        R *= (update.distance[m] / noise.gate) ** 2
-    for i in range(3):
-        for k in range(3):
-            S[b + i, b + k] += R[i, k]
-
-
-@compiled
-def squared_length(A: Array, x: float, y: float, z: float) -> float:
-    """v' A^-1 v for symmetric A (3, 3)."""
-    p, s, w = A[1, 1] * A[2, 2] - A[1, 2] ** 2, A[0, 0] * A[2, 2] - A[0, 2] ** 2, A[0, 0] * A[1, 1] - A[0, 1] ** 2
-    q, r = A[0, 2] * A[1, 2] - A[0, 1] * A[2, 2], A[0, 1] * A[1, 2] - A[0, 2] * A[1, 1]
-    t = A[0, 1] * A[0, 2] - A[0, 0] * A[1, 2]
-    determinant = A[0, 0] * p + A[0, 1] * q + A[0, 2] * r
-    return (p * x * x + s * y * y + w * z * z + 2.0 * (q * x * y + r * x * z + t * y * z)) / determinant  # type: ignore[no-any-return]
-
-
-@compiled
-def append_priors(x: Array, P: Array, priors: Priors, share: float, update: Update) -> int:
-    """Rows of the soft priors, their variance times `share`, behind those of the centres; how many there are then."""
-    W, S, first = update.W, update.S, 3 * update.in_use[0]
-    for p in range(priors.column.size):
-        c, r = priors.column[p], first + p
-        for k in range(P.shape[1]):
-            W[r, k] = P[c, k]
-        for s in range(first):
-            S[s, r] = W[s, c]
-        for s in range(p + 1):
-            S[first + s, r] = P[c, priors.column[s]]
-        S[r, r] += share * priors.variance[p]
-        update.y[r] = priors.value[p] - x[c]
-    return int(first + priors.column.size)
-
-
-@compiled
-def whiten(rows: int, update: Update) -> None:
-    """Factor S = U' U in the upper triangle; W = U'^-1 W, y = U'^-1 y. Rows up to the next multiple of six are emptied.
-
-    Along rows throughout, so that the compiler fills its registers.
-    """
-    S, W, y, pivot = update.S, update.W, update.y, update.pivot
-    M = W.shape[1]
-    for r in range(rows):
-        inverse = 1.0 / np.sqrt(S[r, r])
-        pivot[r] = inverse
-        head = S[r, r:rows]
-        for k in range(head.size):
-            head[k] *= inverse
-        for i in range(r + 1, rows):
-            f, line, upper = S[r, i], S[i, i:rows], S[r, i:rows]
-            for k in range(line.size):
-                line[k] -= f * upper[k]
-        left = y[r]
-        for k in range(r):
-            left -= S[k, r] * y[k]
-        y[r] = left * inverse
-        for s in range(r - r % 6, r):
-            f, target, w = S[s, r], W[r], W[s]
-            for k in range(M):
-                target[k] -= f * w[k]
-        for k in range(M):
-            W[r, k] *= inverse
-        if r % 6 == 5:
-            subtract_six(r - 5, rows, S, W)
-    for r in range(rows, rows + (-rows) % 6):
-        y[r] = 0.0
-        for k in range(M):
-            W[r, k] = 0.0
-
-
-@compiled
-def subtract_six(first: int, rows: int, S: Array, W: Array) -> None:
-    """Take six finished rows of W out of all later ones, while they are in the first cache."""
-    t, u, v, w, x, z = W[first], W[first + 1], W[first + 2], W[first + 3], W[first + 4], W[first + 5]
-    for r in range(first + 6, rows):
-        a, b, c = S[first, r], S[first + 1, r], S[first + 2, r]
-        d, e, f = S[first + 3, r], S[first + 4, r], S[first + 5, r]
-        target = W[r]
-        for k in range(target.size):
-            target[k] -= a * t[k] + b * u[k] + c * v[k] + d * w[k] + e * x[k] + f * z[k]
-
-
-@compiled
-def subtract_gain(rows: int, x: Array, P: Array, update: Update) -> None:
-    """x += W' y, P -= W' W: the upper triangle, mirrored below."""
-    W, y, dx = update.W, update.y, update.dx
-    n = P.shape[0]
-    dx[:] = 0.0
-    for r in range(rows):
-        g, row = y[r], W[r]
-        for k in range(dx.size):
-            dx[k] += g * row[k]
-    for i in range(n):
-        x[i] += dx[i]
-    for r in range(0, rows, 6):
-        # Six rows of W stay in the first cache while all of P passes.
-        for i in range(n):
-            first = i - i % 8
-            a, b, c, d, e, f = W[r, i], W[r + 1, i], W[r + 2, i], W[r + 3, i], W[r + 4, i], W[r + 5, i]
-            line, s, t, u = P[i, first:], W[r, first:], W[r + 1, first:], W[r + 2, first:]
-            v, w, z = W[r + 3, first:], W[r + 4, first:], W[r + 5, first:]
-            for k in range(line.size):
-                line[k] -= a * s[k] + b * t[k] + c * u[k] + d * v[k] + e * w[k] + f * z[k]
-    for i in range(n):
-        for k in range(i):
-            P[i, k] = P[k, i]
+from services.biomech.whole_body.kernels.kinematics import differentiate
+from services.biomech.whole_body.kernels.tables import CENTRES, GROUP, SEEN, Array, Indices, Record
+from services.biomech.whole_body.kernels.weighing import believe, doubt_bones
 
 
 @compiled
 def fuse(
     x: Array, P: Array, biased: bool, centres: Array, state: Indices, share: float,
-    tree: Tree, columns: Columns, noise: Noise, priors: Priors, update: Update,
+    body: Record, belief: Record, work: Record,
 ) -> None:  # fmt: skip
     """Update x (n,) and P (n, M) with centres (15, 3) m whose state (15,) is 0 not tracked, 1 inferred, 2 tracked.
 
-    share: of a nominal frame's time in this one, inverted: priors tell the same per second at every rate.
+    `work` holds the pose and what is expected there. share: of a nominal frame's time in this one, inverted: priors
+    tell the same per second at every rate.
     """
-    linearise(x, biased, centres, state, tree, update)
-    doubt_bones(centres, state, tree, noise.stretch, update)
-    project_rows(P, biased, columns, update)
-    innovation_covariance(biased, state, tree, columns, noise, update)
-    rows = append_priors(x, P, priors, share, update)
-    whiten(rows, update)
-    squares, log_determinant = 0.0, 0.0
-    for r in range(3 * update.in_use[0]):
-        squares += update.y[r] ** 2
-        log_determinant -= 2.0 * np.log(update.pivot[r])
-    update.evidence[0], update.evidence[1] = squares, log_determinant
-    subtract_gain(rows, x, P, update)
+    differentiate(body, work.pose, work.H)
+    doubt_bones(centres, state, body, belief.stretch, work)
+    count = 0
+    for m in range(CENTRES):
+        if state[m] != 0:
+            for i in range(3):
+                work.innovation[m, i] = centres[m, i] - work.expected[m, i]
+            believe(m, state[m] == 1, biased, P, body, belief, work)
+            work.used[count] = m
+            count += 1
+    work.in_use, work.squares, work.log_determinant = count, 0.0, 0.0
+    work.dx[:] = 0.0
+    for a in range(0, count, 2):
+        rows = take_centres(P, biased, a, min(count - a, 2), body, work)
+        whiten(rows, P.shape[1], work)
+        for r in range(rows):
+            work.squares += work.y[r] ** 2
+            work.log_determinant += 2.0 * np.log(work.S[r, r])
+        subtract_gain(P, work)
+    for p in range(0, belief.priors, GROUP):
+        rows = take_priors(x, P, p, min(belief.priors - p, GROUP), share, belief, work)
+        whiten(rows, P.shape[1], work)
+        subtract_gain(P, work)
+    for k in range(x.size):
+        x[k] += work.dx[k]
+
+
+@compiled
+def take_centres(P: Array, biased: bool, first: int, count: int, body: Record, work: Record) -> int:
+    """W, S and y of one or two of the centres in use, from place `first`; how many rows they are."""
+    for a in range(count):
+        m = work.used[first + a]
+        project_rows(P, biased, m, 3 * a, body, work)
+        for i in range(3):
+            r, H = 3 * a + i, work.H[3 * m + i]
+            moved = work.dx[i] + (work.dx[SEEN + 3 * m + i] if biased else 0.0)
+            for c in range(3, body.moving[m]):
+                moved += H[body.columns[m, c]] * work.dx[body.columns[m, c]]
+            work.y[r] = work.innovation[m, i] - moved
+    for a in range(count):
+        m = work.used[first + a]
+        for i in range(3):
+            r, own, H = 3 * a + i, SEEN + 3 * m + i, work.H[3 * m + i]
+            for s in range(r + 1):
+                W = work.W[s]
+                total = W[i] + (W[own] if biased else 0.0)
+                for c in range(3, body.moving[m]):
+                    total += H[body.columns[m, c]] * W[body.columns[m, c]]
+                work.S[r, s] = total + (work.R[m, i, s - 3 * a] if s >= 3 * a else 0.0)
+    return 3 * count
+
+
+@compiled
+def project_rows(P: Array, biased: bool, m: int, first: int, body: Record, work: Record) -> None:
+    """W = H P of a centre: one translation each, the columns that move it, and its own bias."""
+    M = P.shape[1]
+    w0, w1, w2 = work.W[first, :M], work.W[first + 1, :M], work.W[first + 2, :M]
+    p0, p1, p2 = P[0], P[1], P[2]
+    for k in range(w0.size):
+        w0[k], w1[k], w2[k] = p0[k], p1[k], p2[k]
+    for c in range(3, body.moving[m]):
+        j = body.columns[m, c]
+        h0, h1, h2, row = work.H[3 * m, j], work.H[3 * m + 1, j], work.H[3 * m + 2, j], P[j]
+        for k in range(w0.size):
+            p = row[k]
+            w0[k] += h0 * p
+            w1[k] += h1 * p
+            w2[k] += h2 * p
+    if not biased:
+        return
+    own = SEEN + 3 * m
+    for k in range(own):
+        w0[k] += P[k, own]
+        w1[k] += P[k, own + 1]
+        w2[k] += P[k, own + 2]
+    w1[own] += P[own, own + 1]
+    w2[own] += P[own, own + 2]
+    w2[own + 1] += P[own + 1, own + 2]
+    for i in range(3):
+        line, row = work.W[first + i, own + i : M], P[own + i, own + i : M]
+        for k in range(line.size):
+            line[k] += row[k]
+
+
+@compiled
+def take_priors(x: Array, P: Array, first: int, count: int, share: float, belief: Record, work: Record) -> int:
+    """W, S and y of `count` soft priors, their variance times `share`."""
+    for r in range(count):
+        column = belief.prior_column[first + r]
+        line, row = work.W[r, : P.shape[1]], P[column]
+        for k in range(line.size):
+            line[k] = row[k]
+        for s in range(r + 1):
+            work.S[r, s] = row[belief.prior_column[first + s]]
+        work.S[r, r] += share * belief.prior_variance[first + r]
+        work.y[r] = belief.prior_value[first + r] - x[column] - work.dx[column]
+    return count
+
+
+@compiled
+def whiten(rows: int, M: int, work: Record) -> None:
+    """Factor S = L L' in place; W = L^-1 W, y = L^-1 y, and dx += W' y. Rows of the group without use are emptied."""
+    S, y, dx = work.S, work.y, work.dx[:M]
+    for r in range(rows):
+        for s in range(r + 1):
+            total = S[r, s]
+            for l in range(s):  # noqa: E741
+                total -= S[r, l] * S[s, l]
+            S[r, s] = np.sqrt(total) if s == r else total / S[s, s]
+        left = y[r]
+        for s in range(r):
+            left -= S[r, s] * y[s]
+        y[r] = left / S[r, r]
+    for r in range(rows):
+        line = work.W[r, :M]
+        for s in range(r):
+            f, before = S[r, s], work.W[s, :M]
+            for k in range(line.size):
+                line[k] -= f * before[k]
+        f, g = 1.0 / S[r, r], y[r]
+        for k in range(line.size):
+            line[k] *= f
+            dx[k] += g * line[k]
+    for r in range(rows, GROUP):
+        work.W[r, :M] = 0.0
+
+
+@compiled
+def subtract_gain(P: Array, work: Record) -> None:
+    """P -= W' W, as far as P is kept: six rows of W stay in the first cache while P passes once."""
+    n, M, W = P.shape[0], P.shape[1], work.W
+    for i in range(n):
+        first = 0 if i < SEEN else i - i % 8
+        a, b, c, d, e, f = W[0, i], W[1, i], W[2, i], W[3, i], W[4, i], W[5, i]
+        line, s, t, u = P[i, first:], W[0, first:M], W[1, first:M], W[2, first:M]
+        v, w, z = W[3, first:M], W[4, first:M], W[5, first:M]
+        for k in range(line.size):
+            line[k] -= a * s[k] + b * t[k] + c * u[k] + d * v[k] + e * w[k] + f * z[k]

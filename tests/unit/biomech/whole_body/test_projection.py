@@ -4,16 +4,14 @@ import numpy as np
 import pytest
 from scipy.optimize import lsq_linear
 
-from services.biomech.whole_body.kernels.projection import project
-from services.biomech.whole_body.kernels.tables import Bounds
+from services.biomech.whole_body.kernels.projection import project_alone
+from services.biomech.whole_body.kernels.tables import ACTIVE, table
 
 STATES, FIRST, COUNT = 40, 3, 30
 
 
-def bounds(low: np.ndarray, high: np.ndarray) -> Bounds:
-    b = len(low)
-    ints = np.zeros(b, dtype=np.int64)
-    return Bounds(np.arange(FIRST, FIRST + b), low, high, ints, np.zeros(b), np.zeros(b), np.zeros((b, b)), np.zeros(b))
+def project(x: np.ndarray, P: np.ndarray, low: np.ndarray, high: np.ndarray) -> int:
+    return project_alone(x, P, low, high, table(ACTIVE))
 
 
 def problem(seed: int, tightness: float) -> tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray]:
@@ -39,7 +37,7 @@ def test_projection_is_the_optimum(seed: int, tightness: float) -> None:
     x, P, low, high = problem(seed, tightness)
     expected = optimum(x, P, low, high)
     moved = x.copy()
-    active = project(moved, P, bounds(low, high))
+    active = project(moved, P, low, high)
     assert moved == pytest.approx(expected, abs=1e-9)
     assert active > 0
     inside = moved[FIRST : FIRST + COUNT]
@@ -61,5 +59,5 @@ def test_within_bounds_nothing_moves() -> None:
     x, P, _, _ = problem(1, 1.0)
     moved = x.copy()
     wide = np.full(COUNT, 100.0)
-    assert project(moved, P, bounds(-wide, wide)) == 0
+    assert project(moved, P, -wide, wide) == 0
     assert (moved == x).all()
