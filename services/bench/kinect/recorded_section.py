@@ -5,7 +5,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.typing import NDArray
 
-from services.bench.kinect.recordings import RATE_HZ, keraal, kimore
+from services.bench.kinect.recordings import KIMORE, RATE_HZ, keraal, kimore
 from services.bench.scoreboard import Row, at_least, at_most, informative
 from services.biomech.whole_body.colombel import ColombelCekf
 from services.biomech.whole_body.constrained_ekf import OURS, FilterSettings, WholeBodyEkf
@@ -118,8 +118,8 @@ def kimore_methods(seen: Seen) -> dict[str, Followed]:
 def kimore_rows() -> list[Row]:
     """KIMORE squat and arm lift. Raises MissingFile without the data."""
     rows: list[Row] = []
-    for exercise, name in ((5, "squat"), (1, "arm lift")):
-        seen = kimore(exercise)
+    for name in KIMORE:
+        seen = kimore(name)
         for method, found in kimore_methods(seen).items():
             rows += _kimore_figures(f"KIMORE {name}: {method}", found, detail=method != "raw geometry")
         start = first_start(seen)
@@ -151,7 +151,7 @@ def _kimore_figures(label: str, found: Followed, *, detail: bool) -> list[Row]:
 
 def keraal_rows() -> list[Row]:
     """KERAAL trunk lean straight from the centres and through the filter. Raises MissingFile without the data."""
-    recording = keraal("RTK")
+    recording = keraal()
     direct = trunk_lean(recording.seen.centres)[:, 1]
     start = first_start(recording.seen)
     ekf = WholeBodyEkf(start, settings_for(standing=start.standing))

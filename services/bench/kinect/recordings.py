@@ -1,77 +1,64 @@
 """Recorded Kinect v2 skeletons as joint centres in our axes, and the optical reference beside one of them."""
 
-from pathlib import Path
 from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
-from schemas.vocabulary import JointCentre
+from schemas.imu import ReferenceBatch
+from schemas.skeleton import SkeletonBatch
+from schemas.vocabulary import SkeletonJoint, TrackingState
 from services.biomech.whole_body.model import CENTRE_NAMES
-from services.ingest.data import find_data
-from services.ingest.errors import MissingFile
+from services.ingest.source import Source, open_source
 from services.ingest.synthetic.whole_body.camera import Seen
 
 Array = NDArray[np.float64]
 
-KINECT_V2 = {
-    JointCentre.SPINE_BASE: 0, JointCentre.SPINE_MID: 1, JointCentre.SPINE_SHOULDER: 20,
-    JointCentre.SHOULDER_RIGHT: 8, JointCentre.ELBOW_RIGHT: 9, JointCentre.WRIST_RIGHT: 10,
-    JointCentre.SHOULDER_LEFT: 4, JointCentre.ELBOW_LEFT: 5, JointCentre.WRIST_LEFT: 6,
-    JointCentre.HIP_RIGHT: 16, JointCentre.KNEE_RIGHT: 17, JointCentre.ANKLE_RIGHT: 18,
-    JointCentre.HIP_LEFT: 12, JointCentre.KNEE_LEFT: 13, JointCentre.ANKLE_LEFT: 14,
-}  # fmt: skip
-"""Place of each centre among the 25 joints of a Kinect v2."""
-
-ORDER = np.array([KINECT_V2[centre] for centre in CENTRE_NAMES])
 RATE_HZ = 30.0
-OPTICAL_COLUMNS = 7
-OPTICAL_CHEST, OPTICAL_HIPS = 4, 13
+KIMORE = {"squat": "kimore_squat", "arm lift": "kimore_arm_lift"}
+"""Exercise -> the recording as ingest knows it."""
+
+STATES = list(TrackingState)
+UNKNOWN = [float("nan")] * 3
 
 
 class Lean(NamedTuple):
     """A seated trunk exercise: what the camera saw, and the optical inclination of the trunk over the same time."""
 
-    name: str
     seen: Seen
     frontal: Array  # (n,) rad to the right, at the camera's frames
 
 
-def in_our_axes(camera: Array) -> Array:
-    """(..., 3) m: x forward, y up, z right of who faces the camera; Kinect v2 has z away from it and x to its left."""
-    return np.stack([-camera[..., 2], camera[..., 1], camera[..., 0]], axis=-1)
+def kimore(exercise: str) -> Seen:
+    """KIMORE: a squat that starts low, or an arm lift. Raises MissingFile without the data."""
+    return seen_by_camera(open_source(KIMORE[exercise]))[0]
 
 
-def kimore(exercise: int) -> Seen:
-    """KIMORE: 5 is a squat that starts low, 1 an arm lift. Raises MissingFile without the data."""
-    path = find_data("kimore_kinect_v2") / f"JointPositionExercise{exercise}.csv"
-    rows = [line.rstrip(", ").split(",") for line in _lines(path)]
-    values = np.array([row for row in rows if len(row) == 100], dtype=np.float64).reshape(-1, 25, 4)[:, ORDER]
-    return Seen(in_our_axes(values[:, :, :3]), values[:, :, 3].astype(np.int64))
+def keraal() -> Lean:
+    """KERAAL, a seated rotation of the trunk. Raises MissingFile without the data."""
+    source = open_source("keraal_torso_rotation")
+    seen, at_ns = seen_by_camera(source)
+    batches = [m.payload for m in source.messages() if isinstance(m.payload, ReferenceBatch)]
+    truth_ns = np.array([ns for batch in batches for ns in batch.captured_ns])
+    values = np.array([row for batch in batches for row in batch.values], dtype=np.float64)
+    names = [channel.name for channel in source.describe().reference]
+
+    def target(name: str) -> Array:
+        return np.stack([values[:, names.index(f"target_{name}_{axis}")] for axis in "xyz"], axis=1)
+
+    trunk = target("chest") - target("hips")
+    # The sideways axis is that between the thighs' targets, right minus left, levelled.
+    right = np.median(target("thigh_right") - target("thigh_left"), axis=0) * [1.0, 0.0, 1.0]
+    lean = np.arctan2(trunk @ (right / np.linalg.norm(right)), trunk[:, 1])
+    return Lean(seen, np.interp(at_ns, truth_ns, lean))
 
 
-def keraal(exercise: str) -> Lean:
-    """KERAAL, CTK or RTK, seated. Both files span the same time. Raises MissingFile without the data."""
-    folder = find_data("keraal_kinect_vicon")
-    kinect, optical = (
-        _numbers(folder / f"G3-{system}-{exercise}-P1T1-Unknown-C-0.txt") for system in ("Kinect", "Vicon")
-    )
-    centres = in_our_axes(kinect.reshape(len(kinect), 25, 7)[:, ORDER, :3])
-    targets = optical.reshape(len(optical), -1, OPTICAL_COLUMNS)[:, :, :3] / 1000.0
-    trunk = targets[:, OPTICAL_CHEST] - targets[:, OPTICAL_HIPS]
-    # Optical z is up; the sideways axis is that between the thighs' targets, right minus left, levelled.
-    right = np.median(targets[:, 5] - targets[:, 6], axis=0) * [1.0, 1.0, 0.0]
-    sideways = trunk @ (right / np.linalg.norm(right))
-    lean = np.arctan2(sideways, trunk[:, 2])
-    at = np.linspace(0.0, len(lean) - 1.0, len(centres))
-    return Lean(exercise, Seen(centres, np.full(centres.shape[:2], 2)), np.interp(at, np.arange(len(lean)), lean))
-
-
-def _numbers(path: Path) -> Array:
-    return np.array([line.split() for line in _lines(path)], dtype=np.float64)
-
-
-def _lines(path: Path) -> list[str]:
-    if not path.exists():
-        raise MissingFile(f"no file {path.name} in {path.parent}; copy it there or leave this part out")
-    return [line for line in path.read_text().splitlines() if line.strip()]
+def seen_by_camera(source: Source) -> tuple[Seen, NDArray[np.int64]]:
+    """The centres of every frame of a source's first camera, and its times in ns."""
+    camera = source.describe().cameras[0]
+    places = [camera.joints.index(SkeletonJoint(name)) for name in CENTRE_NAMES]
+    batches = [m.payload for m in source.messages() if isinstance(m.payload, SkeletonBatch)]
+    centres = [[frame[j] or UNKNOWN for j in places] for batch in batches for frame in batch.position]
+    states = [[STATES.index(frame[j]) for j in places] for batch in batches for frame in batch.state]
+    captured_ns = np.array([ns for batch in batches for ns in batch.captured_ns])
+    return Seen(np.array(centres), np.array(states)), captured_ns

@@ -5,7 +5,6 @@ import pytest
 
 from services.bench.kinect.cells import PUBLISHED, agreement, mean_cells
 from services.bench.kinect.recorded_section import Followed
-from services.bench.kinect.recordings import in_our_axes
 
 
 def test_the_published_table_has_34_cells_and_its_own_means() -> None:
@@ -33,10 +32,6 @@ def test_cells_average_over_people() -> None:
     truth = np.sin(np.linspace(0.0, 12.0, 300))
     cells = [[agreement(1, 7, truth + np.radians(offset), truth)] for offset in (2.0, 4.0)]
     assert mean_cells(cells)[0].rmsd_deg == pytest.approx(3.0)
-
-
-def test_someone_facing_the_camera_has_their_right_on_its_left() -> None:
-    assert in_our_axes(np.array([0.3, -0.2, 2.5])) == pytest.approx([-2.5, -0.2, 0.3])
 
 
 def test_steps_of_either_knee_count_once_per_frame() -> None:
