@@ -3,7 +3,7 @@
 from collections.abc import Iterable, Set
 
 from schemas.session import HubDescription, SessionDescription
-from schemas.vocabulary import KNEE_ESTIMATORS, EventSource, Segment, Side
+from schemas.vocabulary import CAMERA_ESTIMATORS, FUSION_ESTIMATORS, KNEE_ESTIMATORS, EventSource, Segment, Side
 
 
 def worn_segments(hubs: Iterable[HubDescription]) -> frozenset[Segment]:
@@ -17,8 +17,13 @@ def whole_legs(worn: Set[Segment]) -> tuple[Side, ...]:
 
 
 def used_segments(description: SessionDescription) -> frozenset[Segment]:
-    """Segments whose sensors a session uses: all or, with an estimator of single knees, those of whole legs."""
+    """Segments whose sensors a session uses.
+
+    All; with an estimator of single knees those of whole legs; with one of a camera alone none.
+    """
     worn = worn_segments(description.hubs)
+    if description.estimator in CAMERA_ESTIMATORS:
+        return frozenset()
     if description.estimator not in KNEE_ESTIMATORS:
         return worn
     return frozenset(Segment(f"{part}_{side}") for side in whole_legs(worn) for part in ("thigh", "shank"))
@@ -43,6 +48,29 @@ def event_source(worn: Set[Segment], side: Side) -> EventSource:
 def event_sources(worn: Set[Segment]) -> dict[Side, EventSource]:
     """The same for both legs."""
     return {side: event_source(worn, side) for side in Side}
+
+
+def uses_camera(description: SessionDescription) -> bool:
+    """Whether a session's body is estimated from what a camera sees, alone or beside inertial sensors."""
+    return bool(description.cameras) and description.estimator in CAMERA_ESTIMATORS | FUSION_ESTIMATORS
+
+
+def session_event_sources(description: SessionDescription) -> dict[Side, EventSource]:
+    """What tells the events of each leg in a session.
+
+    Where a camera is used, it tells them unless the whole leg or its shank wears sensors: a foot or the lower back
+    alone would be told by its own motion, which an estimate that shares the body with a camera does not publish.
+    """
+    sources = event_sources(used_segments(description))
+    if not uses_camera(description):
+        return sources
+    by_sensors = (EventSource.FULL_LEG, EventSource.SHANK)
+    return {side: source if source in by_sensors else EventSource.CAMERA for side, source in sources.items()}
+
+
+def session_lone_segments(description: SessionDescription) -> tuple[Segment, ...]:
+    """Segments whose own motion tells events in a session."""
+    return () if uses_camera(description) else lone_segments(used_segments(description))
 
 
 def lone_segments(worn: Set[Segment]) -> tuple[Segment, ...]:

@@ -12,6 +12,7 @@ from services.biomech.event_sources import worn_segments
 from services.flow.message import Message, Output, Stream
 from services.flow.node import Node, State
 from services.metrics.attempts import AttemptTotals
+from services.metrics.exercises import SIDES_OF, ExerciseTotals
 from services.metrics.parameters import MetricsParameters
 from services.metrics.repetitions import RepetitionTotals
 from services.metrics.rhythms import rhythm_metrics
@@ -26,7 +27,7 @@ class MetricsNode:
     When only one foot is seen, they come after every second stride of that foot. Learned rhythms are compared in the
     final ones only: until both streams have ended, it depends on chance which of them has come further. For the same
     reason a session with an exercise tells of the exercise alone, after each repetition, until it ends, and one with a
-    timed up and go of its attempts, after each phase.
+    timed up and go of its attempts, after each phase. A task of the whole body has no metrics of a walk at all.
     """
 
     outputs: tuple[Signal, ...] = (METRICS,)
@@ -46,8 +47,9 @@ class MetricsNode:
         self._known = description.known_rhythms
         self._learned: LearnedRhythm | None = None
         self._totals = SessionTotals()
-        self._is_exercise = description.task is Task.KNEE_FLEXION
-        self._repetitions = RepetitionTotals(_exercised(description) if self._is_exercise else (), parameters)
+        self._is_exercise = description.task is Task.KNEE_FLEXION or description.task in SIDES_OF
+        self._walks = description.task not in SIDES_OF
+        self._repetitions = _repetitions(description, parameters)
         self._attempts = AttemptTotals(parameters) if description.task is Task.TIMED_UP_AND_GO else None
         self._unreported = dict.fromkeys(Side, 0)
         self._captured_ns = 0
@@ -63,7 +65,7 @@ class MetricsNode:
             return self._take_phase(stride, message.envelope.captured_ns, self._attempts)
         if isinstance(stride, LearnedRhythm):
             self._learned = stride
-        if not isinstance(stride, Stride):
+        if not isinstance(stride, Stride) or not self._walks:
             return []
         self._captured_ns = max(self._captured_ns, message.envelope.captured_ns)
         self._totals.add(stride)
@@ -106,7 +108,7 @@ class MetricsNode:
                 *self._repetitions.metrics(),
                 *([] if attempts is None else attempts.metrics(final=final)),
                 *([] if self._is_exercise else self._totals.metrics(self._parameters)),
-                *rhythm_metrics(self._learned if final else None, self._known, final=final),
+                *(rhythm_metrics(self._learned if final else None, self._known, final=final) if self._walks else []),
             ],
             curves=self._totals.curves(self._parameters),
             phases=[] if attempts is None else list(attempts.phases),
@@ -142,6 +144,12 @@ class MetricsNode:
             self._attempts.restore(state["attempts"])
         learned = state["learned"]
         self._learned = None if learned is None else LearnedRhythm.model_validate(learned)
+
+
+def _repetitions(description: SessionDescription, parameters: MetricsParameters) -> RepetitionTotals | ExerciseTotals:
+    if description.task in SIDES_OF:
+        return ExerciseTotals(description.task, parameters)
+    return RepetitionTotals(_exercised(description) if description.task is Task.KNEE_FLEXION else (), parameters)
 
 
 def _exercised(description: SessionDescription) -> list[Side]:

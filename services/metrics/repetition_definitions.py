@@ -30,8 +30,20 @@ def _extending_time(repetition: Repetition) -> float:
 
 RANGE = "repetition_range"
 
-REPETITION_MEANS: tuple[tuple[Definition, Callable[[Repetition], float]], ...] = (
-    (Definition(RANGE, "rad", True, "Largest minus smallest knee flexion of a repetition."), range_of),
+MeasureOfRepetition = Callable[[Repetition], float | None]
+RepetitionMeans = tuple[tuple[Definition, MeasureOfRepetition], ...]
+
+RANGE_MEAN = (
+    Definition(RANGE, "rad", True, "Largest minus smallest angle of what is followed within a repetition."),
+    range_of,
+)
+PEAK_VELOCITY_MEAN: tuple[Definition, MeasureOfRepetition] = (
+    Definition("repetition_peak_velocity", "rad/s", True, "Largest angular velocity of what is followed, either way."),
+    lambda repetition: repetition.largest_velocity,
+)
+
+REPETITION_MEANS: RepetitionMeans = (
+    RANGE_MEAN,
     (
         Definition("repetition_flexion_largest", "rad", True, "Largest knee flexion of a repetition."),
         lambda repetition: max(_angles(repetition)),
@@ -63,12 +75,9 @@ REPETITION_MEANS: tuple[tuple[Definition, Callable[[Repetition], float]], ...] =
         ),
         _extending_time,
     ),
-    (
-        Definition("repetition_peak_velocity", "rad/s", True, "Largest angular velocity of the knee, either way."),
-        lambda repetition: repetition.largest_velocity,
-    ),
+    PEAK_VELOCITY_MEAN,
 )
-"""Metrics that every repetition has: the mean over the repetitions is shown."""
+"""Metrics that every repetition of a knee has: the mean over the repetitions is shown."""
 
 TEMPO = Definition(
     "repetition_tempo",
@@ -101,4 +110,4 @@ REPETITIONS: tuple[Definition, ...] = (
     RANGE_SLOPE,
     TEMPO,
 )
-"""All of them, in the order of every message of a session with such an exercise."""
+"""All of them, in the order of every message of a session in which knees exercise."""

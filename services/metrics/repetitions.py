@@ -18,6 +18,7 @@ from services.metrics.repetition_definitions import (
     REPETITIONS_COUNTED,
     REPETITIONS_REJECTED,
     TEMPO,
+    RepetitionMeans,
     range_of,
 )
 from services.metrics.trend import Trend
@@ -25,11 +26,12 @@ from services.metrics.trend import Trend
 NOUN = "repetitions"
 
 
-class KneeTotals:
-    """One knee. The size does not grow with the number of repetitions."""
+class MovementTotals:
+    """One movement. The size does not grow with the number of repetitions."""
 
-    def __init__(self) -> None:
-        self.moments = {definition.name: Moments.empty() for definition, _ in REPETITION_MEANS}
+    def __init__(self, means: RepetitionMeans) -> None:
+        self._means = means
+        self.moments = {definition.name: Moments.empty() for definition, _ in means}
         self.intervals = Moments.empty()
         self.ranges = Trend()
         self.rejected = 0
@@ -40,8 +42,10 @@ class KneeTotals:
         if not repetition.valid:
             self.rejected += 1
             return
-        for definition, measure in REPETITION_MEANS:
-            self.moments[definition.name].add(measure(repetition))
+        for definition, measure in self._means:
+            value = measure(repetition)
+            if value is not None:
+                self.moments[definition.name].add(value)
         # Counted by those that count: a partial one between two others is told, but no step of the trend.
         self.ranges.add(float(self.ranges.count), range_of(repetition))
         if self._newest is not None:
@@ -51,29 +55,29 @@ class KneeTotals:
                 self.intervals.add((repetition.start_ns - start_ns) / 1e9)
         self._newest = repetition.index, repetition.start_ns, repetition.end_ns
 
-    def metrics(self, side: str, parameters: MetricsParameters) -> list[Metric]:
-        """Every row of the table, in its order."""
+    def metrics(self, side: str | None, parameters: MetricsParameters) -> list[Metric]:
+        """Every row of the table, in its order; side None for a movement of the whole body."""
         least, ranges = parameters.least_repetitions, self.moments[RANGE]
         return [
             summary.shown(REPETITIONS_COUNTED, side, float(ranges.count), None, None, ranges.count),
             summary.shown(REPETITIONS_REJECTED, side, float(self.rejected), None, None, self.rejected),
             *(
                 summary.mean_metric(definition, side, self.moments[definition.name], least, NOUN)
-                for definition, _ in REPETITION_MEANS
+                for definition, _ in self._means
             ),
             *summary.variability_metrics(RANGE_SD, RANGE_CV, side, ranges, least, NOUN),
             self._slope(side, least),
             self._tempo(side, least),
         ]
 
-    def _slope(self, side: str, least: int) -> Metric:
+    def _slope(self, side: str | None, least: int) -> Metric:
         count, slope = self.ranges.count, self.ranges.slope()
         because = summary.too_few(count, least, NOUN)
         if because is not None or slope is None:
             return summary.withheld(RANGE_SLOPE, side, count, because or summary.too_few(count, 3, NOUN) or "")
         return summary.shown(RANGE_SLOPE, side, slope[0], None, slope[1], count)
 
-    def _tempo(self, side: str, least: int) -> Metric:
+    def _tempo(self, side: str | None, least: int) -> Metric:
         """60 / mean interval; its spread and error follow to first order."""
         mean = summary.mean_metric(TEMPO, side, self.intervals, least - 1, "intervals between repetitions of a set")
         if mean.value is None or mean.spread is None or mean.mean_std is None:
@@ -104,11 +108,11 @@ class KneeTotals:
 
 
 class RepetitionTotals:
-    """Those knees of a session that wear sensors."""
+    """The knees of a session that wear sensors."""
 
     def __init__(self, sides: Iterable[Side], parameters: MetricsParameters) -> None:
         self._parameters = parameters
-        self._knees = {side: KneeTotals() for side in sides}
+        self._knees = {side: MovementTotals(REPETITION_MEANS) for side in sides}
         self.first: list[Repetition] = []
         """One by one, those that count and those that do not, as many as a message takes."""
 

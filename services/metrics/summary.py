@@ -47,7 +47,7 @@ def too_few(strides: int, least: int, noun: str = "strides") -> str | None:
 
 
 def independent_strides(moments: Moments, definition: Definition) -> float:
-    """Number of strides for a standard error.
+    """Number of strides, or of what else it rests on, for a standard error.
 
     Strides of the two feet overlap by half, so where both count, each counts half.
     """

@@ -3,17 +3,19 @@
 from typing import Protocol
 
 from schemas.health import Rejection
-from schemas.kinematics import JointState, SegmentMotion
+from schemas.kinematics import JointCentres, JointState, SegmentMotion
 from schemas.rhythm import Rhythm
 from schemas.session import SessionDescription
 from schemas.signals import GAIT_EVENT, REPETITION, STRIDE, TASK_PHASE, Signal
 from schemas.vocabulary import Task
-from services.biomech.event_sources import lone_segments, used_segments
+from services.biomech.event_sources import session_lone_segments, uses_camera
 from services.flow.message import Message, Output, Stream
 from services.flow.node import Node, State
 from services.segmentation.batch import Batch
+from services.segmentation.exercises.movements import FOLLOWED
+from services.segmentation.exercises.segmenter import ExerciseSegmenter
 from services.segmentation.gait.segmenter import GaitSegmenter
-from services.segmentation.intake import JOINTS_FROM, MOTION_FROM, RHYTHM_FROM, Intake
+from services.segmentation.intake import CENTRES_FROM, JOINTS_FROM, MOTION_FROM, RHYTHM_FROM, Intake
 from services.segmentation.pairing import Pairing, Together
 from services.segmentation.parameters import SegmentationParameters
 from services.segmentation.repetitions.segmenter import RepetitionSegmenter
@@ -46,6 +48,8 @@ def segmenters(description: SessionDescription, parameters: SegmentationParamete
     if description.task is Task.KNEE_FLEXION:
         # No gait beside it: a shank that is stretched out and drawn back looks like a swing.
         return {"repetitions": RepetitionSegmenter()}
+    if description.task in FOLLOWED:
+        return {"exercises": ExerciseSegmenter(description.task)}
     found: dict[str, Segmenter] = {"gait": GaitSegmenter(description, parameters)}
     if description.task is Task.TIMED_UP_AND_GO:
         found["timed_up_and_go"] = TimedUpAndGoSegmenter(description)
@@ -58,10 +62,12 @@ class SegmentationNode:
     outputs: tuple[Signal, ...] = (GAIT_EVENT, STRIDE, TASK_PHASE, REPETITION)
 
     def __init__(self, description: SessionDescription, parameters: SegmentationParameters = DEFAULTS) -> None:
-        with_motion = bool(lone_segments(used_segments(description)))
-        self.streams: tuple[Stream, ...] = (JOINTS_FROM, RHYTHM_FROM, MOTION_FROM)[: 3 if with_motion else 2]
+        with_motion, with_centres = bool(session_lone_segments(description)), uses_camera(description)
+        self.streams: tuple[Stream, ...] = (
+            JOINTS_FROM, RHYTHM_FROM, *[MOTION_FROM] * with_motion, *[CENTRES_FROM] * with_centres
+        )  # fmt: skip
         self._intake = Intake()
-        self._pairing = Pairing(with_motion=with_motion)
+        self._pairing = Pairing(with_motion=with_motion, with_centres=with_centres)
         self._segmenters = segmenters(description, parameters)
 
     def step(self, message: Message) -> list[Output]:
@@ -73,6 +79,8 @@ class SegmentationNode:
             complete = self._pairing.add_rhythm(payload)
         elif isinstance(payload, SegmentMotion) and payload.captured_ns:
             complete = self._pairing.add_motion(payload)
+        elif isinstance(payload, JointCentres) and payload.captured_ns:
+            complete = self._pairing.add_centres(payload)
         else:
             return []
         return [output for together in complete for output in self._take(together)]
@@ -85,7 +93,7 @@ class SegmentationNode:
     def _take(self, together: Together) -> list[Output]:
         refused = [segmenter.take_motion(together.motion) for segmenter in self._segmenters.values()]
         self._intake.refuse_motion(max(refused))
-        batch = self._intake.take(together.joints, together.rhythm)
+        batch = self._intake.take(together.joints, together.rhythm, together.centres)
         if batch is None:
             return []
         outputs = [output for segmenter in self._segmenters.values() for output in segmenter.take(batch)]

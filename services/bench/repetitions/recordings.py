@@ -10,7 +10,7 @@ from services.bench.repetitions.runs import of_reference, strides_of, through_ch
 from services.bench.repetitions.scores import mean_absolute
 from services.bench.scoreboard import Row, at_most, informative
 from services.ingest.errors import SourceError
-from services.segmentation.repetitions.knee_watch import range_of
+from services.segmentation.repetitions.movement_watch import range_of
 
 MEASURED = {
     "sit to stand (Al Borno)": ("alborno_sub03_sts1", Side.LEFT),

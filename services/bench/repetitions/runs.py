@@ -18,7 +18,8 @@ from services.ingest.source import iter_messages, open_source
 from services.ingest.synthetic.knee_flexion import SyntheticKnee
 from services.segmentation.batch import INDEX
 from services.segmentation.node import build
-from services.segmentation.repetitions.knee_watch import MISSING, KneeWatch
+from services.segmentation.repetitions.knee_watch import KneeWatch
+from services.segmentation.repetitions.movement_watch import MISSING
 from services.segmentation.repetitions.parameters import RepetitionParameters
 from services.segmentation.repetitions.trail import Sample
 

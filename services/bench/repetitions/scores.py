@@ -8,7 +8,7 @@ from numpy.typing import NDArray
 
 from schemas.tasks import Repetition
 from services.bench.repetitions.exercises import Truth
-from services.segmentation.repetitions.knee_watch import range_of
+from services.segmentation.repetitions.movement_watch import range_of
 
 WITHIN = 0.1
 """Share of a repetition by which its start and end may be off to be cut right, as in the published segmentation."""

@@ -7,7 +7,7 @@ from schemas.kinematics import SegmentMotion
 from schemas.session import SessionDescription
 from schemas.signals import GAIT_EVENT, STRIDE
 from schemas.vocabulary import EventSource
-from services.biomech.event_sources import event_sources, used_segments
+from services.biomech.event_sources import session_event_sources
 from services.flow.message import Output
 from services.flow.node import State
 from services.segmentation.batch import Batch
@@ -24,7 +24,7 @@ class GaitSegmenter:
     """Events as they are recognised, strides once they are complete."""
 
     def __init__(self, description: SessionDescription, parameters: SegmentationParameters) -> None:
-        sources = event_sources(used_segments(description))
+        sources = session_event_sources(description)
         if EventSource.LOWER_BACK in sources.values():
             parameters = replace(parameters, history_margin_s=parameters.back_history_margin_s)
         self._parameters = parameters

@@ -119,6 +119,11 @@ class ExcursionDetector:
         self.state = ExcursionState(usual=self.state.usual)
         return None if away is None else away.closed(Closed.BROKEN_OFF)
 
+    def forget_home(self) -> None:
+        """Home is elsewhere from now on; an excursion under way goes on."""
+        if self.state.away is None:
+            self.state.low = self.state.high = self.state.rest = None
+
     def _still_s(self, now: Point) -> float:
         return 0.0 if self.state.rest is None else (now.captured_ns - self.state.rest.captured_ns) / 1e9
 

@@ -25,6 +25,8 @@ class RepetitionParameters:
     """rad (2.3 deg) within which a resting knee stays; a smoothed tremor of 3 deg does."""
     still_s: float = 0.5
     """s within that band after which the knee rests. 0.1 repetitions per second of 60 deg cross it in 0.3 s."""
+    floor_margin: float = 0.0
+    """rad above a movement's floor, where there is one, up to which it is still at home."""
     return_share: float = 0.5
     """share of the way that must be made back before a new movement outward is another repetition; less is a
     hesitation (proposal)."""

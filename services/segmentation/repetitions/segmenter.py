@@ -7,7 +7,8 @@ from schemas.vocabulary import Side
 from services.flow.message import Output
 from services.flow.node import State
 from services.segmentation.batch import INDEX, Batch
-from services.segmentation.repetitions.knee_watch import MISSING, UNSEEN, KneeWatch
+from services.segmentation.repetitions.knee_watch import UNSEEN, KneeWatch
+from services.segmentation.repetitions.movement_watch import MISSING
 from services.segmentation.repetitions.parameters import RepetitionParameters
 from services.segmentation.repetitions.trail import Sample
 

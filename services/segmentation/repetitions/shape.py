@@ -17,19 +17,23 @@ class Shape(NamedTuple):
     turn_ns: int
     end: int
     turn_angle: float
+    hold_s: float
+    """s from the first to the last sample within a share of the range from the farthest point."""
     thigh_swing: float
     """How much further forward the thigh is half-way while the knee extends than half-way while it flexes."""
 
 
-def shape_of(course: Course, excursion: Excursion, parameters: RepetitionParameters) -> Shape:
+def shape_of(
+    course: Course, excursion: Excursion, parameters: RepetitionParameters, floor: float | None = None
+) -> Shape:
     """Start and end by the speed of each way, the turn as the middle of the time it is held.
 
     A way begins where its speed first reaches a share of its largest one, seen from the resting end, and ends where
     the speed last has it. A sine begins 2 % of its period after its extreme by that rule; a movement that leaves a
-    rest begins when it can be seen to move.
+    rest begins when it can be seen to move. Below `floor`, rad, nothing moves.
     """
     p = parameters
-    out = excursion.sign * course.smooth
+    out = excursion.sign * (course.smooth if floor is None else np.maximum(course.smooth, floor))
     # Smoothing to one side, as the detector does, is late by half the window, so the extremes are looked for again.
     home, end = course.at(excursion.home.captured_ns), course.at(excursion.end.captured_ns)
     farthest = home + int(np.argmax(out[home : end + 1]))
@@ -42,9 +46,10 @@ def shape_of(course: Course, excursion: Excursion, parameters: RepetitionParamet
     held = out[start : finish + 1] >= out[farthest] - p.held_share * reach
     first, last = start + int(np.argmax(held)), finish - int(np.argmax(held[::-1]))
     turn_ns = int((course.captured_ns[first] + course.captured_ns[last]) // 2)
+    hold_s = float(course.time_s[last] - course.time_s[first])
     extreme = start + int(np.argmax(excursion.sign * course.angle[start : finish + 1]))
     swing = _thigh_swing(course.thigh, out, (start, farthest, finish)) * excursion.sign
-    return Shape(start, turn_ns, finish, float(course.angle[extreme]), swing)
+    return Shape(start, turn_ns, finish, float(course.angle[extreme]), hold_s, swing)
 
 
 def _onset(out: Array, speed: Array, home: int, p: RepetitionParameters) -> int:

@@ -11,7 +11,7 @@ Array = NDArray[np.float64]
 
 
 class Sample(NamedTuple):
-    """One knee at one time: rad, rad/s, rad, and the thigh's inclination forward, rad."""
+    """One movement at one time: rad, rad/s, rad; and the thigh's inclination forward, rad, 0 where it tells nothing."""
 
     captured_ns: int
     angle: float

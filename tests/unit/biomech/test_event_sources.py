@@ -1,7 +1,17 @@
 import pytest
 
-from schemas.vocabulary import EventSource, Segment, Side
-from services.biomech.event_sources import event_source, event_sources, lone_segments, used_segments, whole_legs
+from schemas.session import CameraDescription
+from schemas.vocabulary import CameraKind, EventSource, Segment, Side, SkeletonJoint
+from services.biomech.event_sources import (
+    event_source,
+    event_sources,
+    lone_segments,
+    session_event_sources,
+    session_lone_segments,
+    used_segments,
+    uses_camera,
+    whole_legs,
+)
 from services.ingest.source import open_source
 
 LEFT_LEG = {Segment.THIGH_LEFT, Segment.SHANK_LEFT}
@@ -43,3 +53,34 @@ def test_only_what_tells_events_alone_is_followed_alone():
     assert lone_segments({Segment.PELVIS, *LEFT_LEG, *FEET}) == (Segment.FOOT_RIGHT,)
     assert lone_segments({Segment.PELVIS, Segment.SHANK_LEFT}) == (Segment.PELVIS,)
     assert lone_segments({Segment.SHANK_LEFT, Segment.SHANK_RIGHT, *FEET}) == ()
+
+
+CAMERA = CameraDescription(
+    name="camera", kind=CameraKind.KINECT_V2, rate_hz=30, joints=list(SkeletonJoint)[:25], floor_m=None
+)
+
+
+@pytest.mark.parametrize(
+    ("spec", "estimator", "expected"),
+    [
+        ("synthetic:walk?worn=0", "body_cekf", EventSource.CAMERA),
+        ("synthetic:walk?worn=0", "fusion", EventSource.FULL_LEG),
+        ("synthetic:walk?worn=3", "fusion", EventSource.CAMERA),
+    ],
+)
+def test_a_camera_tells_events_where_no_leg_wears_sensors_that_are_used(spec, estimator, expected):
+    description = open_source(spec, estimator="ekf").describe()
+    seen = description.model_copy(update={"estimator": estimator, "cameras": [CAMERA]})
+    assert uses_camera(seen)
+    assert session_event_sources(seen) == dict.fromkeys(Side, expected)
+    assert session_lone_segments(seen) == ()
+
+
+def test_a_camera_that_is_not_used_tells_nothing():
+    description = open_source("synthetic:walk?worn=3", estimator="ekf").describe()
+    seen = description.model_copy(update={"cameras": [CAMERA]})
+    assert not uses_camera(seen)
+    assert (
+        session_event_sources(seen) == session_event_sources(description) == dict.fromkeys(Side, EventSource.LOWER_BACK)
+    )
+    assert session_lone_segments(seen) == (Segment.PELVIS,)

@@ -5,12 +5,13 @@ import pytest
 
 from services.metrics import definitions
 from services.metrics.definitions import METRICS
+from services.metrics.exercise_definitions import EXERCISES
 from services.metrics.repetition_definitions import REPETITIONS
 from services.metrics.tug_definitions import TUG
 
 README = (Path(definitions.__file__).parent / "README.md").read_text()
 UNITS = {"s", "m", "m/s", "rad", "1", "steps/min", "rad/s", "rad/repetition", "repetitions/min"}
-ALL = (*METRICS, *REPETITIONS, *TUG)
+ALL = (*METRICS, *REPETITIONS, *EXERCISES, *TUG)
 
 
 @pytest.mark.parametrize("definition", ALL, ids=lambda definition: definition.name)

@@ -3,7 +3,7 @@ import random
 
 import pytest
 
-from schemas.kinematics import JointState, SegmentMotion
+from schemas.kinematics import JointCentres, JointState, SegmentMotion
 from schemas.rhythm import Rhythm
 from services.segmentation.pairing import Pairing
 
@@ -22,7 +22,7 @@ def fed(pairing: Pairing, messages) -> list[tuple[list[int], bool]]:
         add = pairing.add_joints if isinstance(message, JointState) else pairing.add_rhythm
         pairs += add(message)
     pairs += pairing.flush()
-    return [(j.captured_ns, r is not None and r.captured_ns == j.captured_ns) for j, r, _ in pairs]
+    return [(j.captured_ns, r is not None and r.captured_ns == j.captured_ns) for j, r, *_ in pairs]
 
 
 def shuffled(first: list, second: list, seed: int) -> list:
@@ -70,7 +70,7 @@ def test_snapshot_keeps_what_waits():
     waiting.add_joints(full)
     resumed = Pairing()
     resumed.restore(json.loads(json.dumps(waiting.snapshot())))
-    [(kept, partner, _)] = resumed.add_rhythm(
+    [(kept, partner, *_)] = resumed.add_rhythm(
         Rhythm(captured_ns=[5], phase=[1], frequency=[1], quality=[1], locked=[True])
     )
     assert kept == full
@@ -109,3 +109,24 @@ def test_motion_that_waits_survives_a_snapshot():
     [together] = resumed.add_joints(joints(4, 5))
     assert together.motion == motion(4, 5)
     assert together.rhythm is not None
+
+
+def centres(*captured_ns: int) -> JointCentres:
+    return JointCentres(captured_ns=list(captured_ns), position=[], seen=[])
+
+
+def test_joint_centres_are_waited_for_where_a_camera_is_used():
+    pairing = Pairing(with_centres=True)
+    assert pairing.add_joints(joints(0, 1)) == []
+    assert pairing.add_rhythm(rhythm(0, 1)) == []
+    [together] = pairing.add_centres(centres(0, 1))
+    assert together.centres == centres(0, 1)
+    pairing.add_joints(joints(2, 3))
+    pairing.add_rhythm(rhythm(2, 3))
+    [lost] = pairing.add_centres(centres(4, 5))
+    assert (lost.joints.captured_ns, lost.centres) == ([2, 3], None)
+    resumed = Pairing(with_centres=True)
+    resumed.restore(json.loads(json.dumps(pairing.snapshot())))
+    resumed.add_joints(joints(4, 5))
+    [found] = resumed.add_rhythm(rhythm(4, 5))
+    assert found.centres == centres(4, 5)

@@ -9,8 +9,9 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from schemas.vocabulary import Side
-from services.segmentation.repetitions import knee_watch
-from services.segmentation.repetitions.knee_watch import KneeWatch, range_of
+from services.segmentation.repetitions import knee_watch, movement_watch
+from services.segmentation.repetitions.knee_watch import KneeWatch
+from services.segmentation.repetitions.movement_watch import range_of
 from services.segmentation.repetitions.parameters import RepetitionParameters
 from services.segmentation.repetitions.trail import Sample
 
@@ -95,7 +96,7 @@ def test_a_resting_knee_makes_none(level):
 def test_a_partial_repetition_is_told_and_does_not_count():
     whole, part = there_and_back(SEATED, 0.1, 2.0), there_and_back(SEATED, 1.0, 2.0)
     made = found_in(np.concatenate([held(SEATED, 2.0), *[whole] * 4, part, whole]))
-    assert [one.rejected_because for one in made] == [None] * 4 + [knee_watch.PARTIAL, None]
+    assert [one.rejected_because for one in made] == [None] * 4 + [movement_watch.PARTIAL, None]
 
 
 def test_a_hesitation_is_part_of_its_repetition():
@@ -126,7 +127,7 @@ def test_another_exercise_may_rest_on_the_other_side():
 def test_a_repetition_that_began_half_way_does_not_count():
     whole = there_and_back(STANDING, 1.5, 2.0, rest_s=0.0)
     made = found_in(np.concatenate([held(0.8, 1.0), moved(0.8, 1.5, 1.0), moved(1.5, STANDING, 1.0), *[whole] * 3]))
-    assert [one.rejected_because for one in made] == [knee_watch.ENDS_APART, None, None, None]
+    assert [one.rejected_because for one in made] == [movement_watch.ENDS_APART, None, None, None]
 
 
 def test_missing_samples_close_a_repetition():
@@ -135,9 +136,9 @@ def test_missing_samples_close_a_repetition():
     knee = KneeWatch(Side.LEFT, RepetitionParameters())
     # Cut out from the middle of the second way back.
     made = [one for sample in fed[:650] for one in knee.take(sample)]
-    made += knee.interrupt(knee_watch.MISSING)
+    made += knee.interrupt(movement_watch.MISSING)
     made += [one for sample in fed[690:] for one in knee.take(sample)] + knee.finish()
-    assert [one.rejected_because for one in made] == [None, knee_watch.MISSING, None, None]
+    assert [one.rejected_because for one in made] == [None, movement_watch.MISSING, None, None]
     assert all(one.start_angle > one.turn_angle for one in made)
 
 
@@ -148,7 +149,7 @@ def test_a_new_zero_is_no_movement():
     fed = [one._replace(angle=one.angle - 0.3 * (i >= 750) + 0.25 * (i >= 1150)) for i, one in enumerate(fed)]
     knee = KneeWatch(Side.LEFT, RepetitionParameters())
     made = [one for sample in fed for one in knee.take(sample)] + knee.finish()
-    halves = [knee_watch.SET_ANEW, knee_watch.ENDS_APART]
+    halves = [movement_watch.SET_ANEW, movement_watch.ENDS_APART]
     assert [one.rejected_because for one in made] == [None, None, None, *halves, None, None]
 
 
@@ -165,7 +166,7 @@ def test_a_seated_knee_first_seen_in_a_hold_still_rests_bent():
     each = there_and_back(SEATED, STANDING, 2.0, hold_s=5.0, rest_s=2.0)
     knees = np.concatenate([held(STANDING, 3.0), moved(STANDING, SEATED, 1.0), held(SEATED, 2.0), *[each] * 4])
     made = found_in(knees, held(LEVEL, len(knees) / RATE_HZ))
-    assert [one.rejected_because for one in made] == [knee_watch.ENDS_APART] + [None] * 4
+    assert [one.rejected_because for one in made] == [movement_watch.ENDS_APART] + [None] * 4
     assert all(one.start_angle > one.turn_angle for one in valid(made))
 
 
@@ -243,7 +244,7 @@ def test_any_course_gives_sound_repetitions(steps, gap):
     knee = KneeWatch(Side.RIGHT, RepetitionParameters())
     made = []
     for i, sample in enumerate(samples(angle)):
-        made += knee.interrupt(knee_watch.MISSING) if gap and i % (7 * gap) == 0 else []
+        made += knee.interrupt(movement_watch.MISSING) if gap and i % (7 * gap) == 0 else []
         made += knee.take(sample)
     made += knee.finish()
     assert [one.index for one in made] == list(range(len(made)))

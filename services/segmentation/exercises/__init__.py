@@ -1,0 +1,1 @@
+"""Repetitions of the tasks of the whole body."""
