@@ -5,9 +5,10 @@ from typing import Any
 
 from schemas.session import SessionDescription
 from schemas.signals import command_key
+from schemas.vocabulary import Task
 from services.bus.connection import RemoteError
 from services.gateway.bus_feed import BusLink
-from services.gateway.control import ControlRefused, ControlUnavailable, Source, StartRequest
+from services.gateway.control import ControlRefused, ControlUnavailable, Source, StartRequest, Worn
 
 START_TIMEOUT_S = 20.0
 """Opening a long recording takes seconds."""
@@ -48,13 +49,11 @@ class BusControl:
         answer = self._order("mark", {"session": session, "last_s": last_s, "at_s": at_s}, TIMEOUT_S)
         return float(answer["from_s"]), float(answer["to_s"])
 
-    def recordings(self) -> list[Source]:
+    def offered(self) -> list[Source]:
         """Ask an ingest what it has."""
         answer = self._order("sources", {}, TIMEOUT_S)
-        return [
-            Source(each["name"], each["title"], "recording", each.get("duration_s"))
-            for each in answer.get("recordings", [])
-        ]
+        devices = [Source(each["name"], each["title"], "device", None, "camera") for each in answer.get("devices", [])]
+        return devices + [_recording(each) for each in answer.get("recordings", [])]
 
     def _order(self, command: str, body: dict[str, Any], timeout_s: float) -> dict[str, Any]:
         bus = self._link.bus
@@ -72,3 +71,11 @@ class BusControl:
             raise ControlRefused(str(answer["error"]))
         assert isinstance(answer, dict)
         return answer
+
+
+def _recording(told: dict[str, Any]) -> Source:
+    worn: Worn | None = None
+    if told.get("cameras"):
+        worn = "camera_and_sensors" if told.get("hubs") else "camera"
+    task = Task(told["task"]) if told.get("task") else None
+    return Source(told["name"], told["title"], "recording", told.get("duration_s"), worn, task)

@@ -47,13 +47,16 @@ def worn_by(estimator: str) -> Worn:
     return "knee" if estimator in KNEE_ESTIMATORS else "lower_body"
 
 
+SourceKind = Literal["recording", "synthetic", "device"]
+
+
 @dataclass(frozen=True, slots=True)
 class Source:
-    """Something that can be played as a session."""
+    """Something that can be played as a session, or a device that sends by itself."""
 
     id: str
     title: str
-    kind: Literal["recording", "synthetic"]
+    kind: SourceKind
     duration_s: float | None
     worn: Worn | None = None
     task: Task | None = None
@@ -71,12 +74,16 @@ class Control(Protocol):
     def mark(self, session: str, last_s: float, at_s: float | None) -> tuple[float, float]:
         """Mark the last seconds as standing; the span, s of session time. Raises ControlRefused with the reason."""
 
-    def recordings(self) -> list[Source]:
-        """Recordings that an ingest has at hand."""
+    def offered(self) -> list[Source]:
+        """Devices that send to an ingest, and recordings that it has at hand."""
 
 
 def _walker(options: str, title: str, worn: Worn = "lower_body") -> Source:
     return Source(f"synthetic:walk?{options}&duration=120", title, "synthetic", 120.0, worn, Task.WALK)
+
+
+def _before_a_camera(motion: str, title: str, task: Task) -> Source:
+    return Source(f"synthetic:{motion}?person=2", title, "synthetic", None, "camera", task)
 
 
 SYNTHETIC_SOURCES = (
@@ -101,5 +108,9 @@ SYNTHETIC_SOURCES = (
         Task.TIMED_UP_AND_GO,
     ),
     Source("synthetic:knee?seed=2", "Seated knee extension, right knee", "synthetic", 90.0, "knee", Task.KNEE_FLEXION),
+    _before_a_camera("squat", "Squats with the arms raised, camera", Task.SQUAT),
+    _before_a_camera("steps", "Stepping on the spot, camera", Task.STEPPING),
+    _before_a_camera("tilt_forward", "Leaning forward, camera", Task.TRUNK_TILT_SAGITTAL),
+    _before_a_camera("tilt_aside", "Leaning to the sides, camera", Task.TRUNK_TILT_FRONTAL),
 )
 """Simulated people that are always there."""

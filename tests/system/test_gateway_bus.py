@@ -54,7 +54,7 @@ def wait(condition, what: str):
 
 def answers(control) -> bool:
     try:
-        return bool(control.recordings())
+        return bool(control.offered())
     except ControlUnavailable:
         return False
 
@@ -137,9 +137,16 @@ def test_orders_reach_the_ingest_and_refusals_come_back(settings, closing, tmp_p
     serve("start", describe("a").model_dump(mode="json"))
     serve("mark", {"session": "a", "from_s": 9.5, "to_s": 12.5})
     serve("stop", {"error": "session b does not run here"})
-    serve("sources", {"recordings": [{"name": "some_walk", "title": "Some walk", "duration_s": None}]})
+    known = {"name": "some_squats", "title": "Some squats", "hubs": False, "cameras": True, "task": "squat"}
+    camera = {"name": "device:kinect?port=7788", "title": "Kinect on port 7788", "sending": True}
+    recordings = [{"name": "some_walk", "title": "Some walk", "duration_s": None}, known]
+    serve("sources", {"recordings": recordings, "devices": [camera]})
     wait(lambda: answers(control), "the ingest answers")
-    assert [(each.id, each.kind) for each in control.recordings()] == [("some_walk", "recording")]
+    assert [(each.id, each.kind, each.worn, each.task) for each in control.offered()] == [
+        ("device:kinect?port=7788", "device", "camera", None),
+        ("some_walk", "recording", None, None),
+        ("some_squats", "recording", "camera", "squat"),
+    ]
     assert control.start(ORDER) == describe("a")
     with pytest.raises(ControlRefused, match="does not run here"):
         control.stop("b")
@@ -152,7 +159,7 @@ def test_orders_reach_the_ingest_and_refusals_come_back(settings, closing, tmp_p
 
 def test_before_there_is_a_router_orders_say_so(tmp_path):
     with pytest.raises(ControlUnavailable, match="router"):
-        BusControl(BusLink()).recordings()
+        BusControl(BusLink()).offered()
 
 
 def test_the_feed_waits_for_the_router_and_outlives_it(router, settings, closing, tmp_path):

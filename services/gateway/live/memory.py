@@ -6,7 +6,7 @@ from services.gateway.live.views import View
 
 
 class Memory:
-    """Bounded: one view per kind, side or joint, and the phases of one attempt."""
+    """Bounded: one view per kind, side or movement, and the phases of one attempt."""
 
     def __init__(self) -> None:
         self._views: dict[tuple[str, ...], View] = {}
@@ -26,7 +26,7 @@ class Memory:
             case "stride":
                 self._views["stride", view["side"]] = view
             case "repetition":
-                self._views["repetition", view["degree_of_freedom"]] = view
+                self._views["repetition", view["degree_of_freedom"], view["side"] or ""] = view
             case "task_phase":
                 self._keep_phase(view)
 

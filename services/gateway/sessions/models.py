@@ -39,9 +39,9 @@ class SessionIn(BaseModel):
 
     # No slash and no dot: a file of the server can not be named from a browser, only what the server itself offers.
     source: str = Field(
-        pattern=r"^(synthetic:[a-z_]+(\?[A-Za-z0-9_=&.+-]*)?|[A-Za-z0-9][A-Za-z0-9_-]*)$",
+        pattern=r"^((synthetic|device):[a-z_]+(\?[A-Za-z0-9_=&.+-]*)?|[A-Za-z0-9][A-Za-z0-9_-]*)$",
         max_length=300,
-        description="an id from GET /v1/sources, or a synthetic walker with its options",
+        description="an id from GET /v1/sources, a device with options added, or a synthetic person with options",
         examples=["synthetic:walk?speed=1.1&seed=3&duration=60"],
     )
     speed: float | None = Field(

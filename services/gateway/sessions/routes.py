@@ -177,6 +177,7 @@ def _metrics_of(gateway: Gateway, session: str) -> SessionMetrics:
 
 def _ask_for_start(gateway: Gateway, request: StartRequest) -> SessionDescription:
     try:
+        _check_offered(gateway, request.source)
         return gateway.control.start(request)
     except ControlUnavailable as error:
         _give_up(gateway, request.session, str(error))
@@ -184,6 +185,14 @@ def _ask_for_start(gateway: Gateway, request: StartRequest) -> SessionDescriptio
     except ControlRefused as error:
         _give_up(gateway, request.session, str(error))
         raise Problem(HTTPStatus.UNPROCESSABLE_ENTITY, str(error), CHOOSE_SOURCE) from error
+
+
+def _check_offered(gateway: Gateway, source: str) -> None:
+    """No request can make the site listen where nobody set up a device. Raises ControlRefused."""
+    if source.startswith("device:"):
+        devices = [each.id for each in gateway.control.offered() if each.kind == "device"]
+        if not any(source == device or source.startswith(f"{device}&") for device in devices):
+            raise ControlRefused(f"{source} is not there: switch the camera and its computer on, then choose it again")
 
 
 def _give_up(gateway: Gateway, session: str, reason: str) -> None:

@@ -1,13 +1,11 @@
 """REST of sources."""
 
-from typing import Literal
-
 from fastapi import APIRouter
 from pydantic import BaseModel, ConfigDict, Field
 
 from schemas.vocabulary import Task
 from services.gateway.context import Context
-from services.gateway.control import SYNTHETIC_SOURCES, ControlUnavailable, Worn, worn_by
+from services.gateway.control import SYNTHETIC_SOURCES, ControlUnavailable, SourceKind, Worn, worn_by
 from services.gateway.problems import documented
 from services.gateway.sessions.records import DEFAULT_ESTIMATOR, known_estimators
 
@@ -21,7 +19,7 @@ class SourceOut(BaseModel):
 
     id: str = Field(description="to be given to POST /v1/sessions", examples=["synthetic:walk?speed=1.2&seed=1"])
     title: str = Field(examples=["Walk, comfortable speed"])
-    kind: Literal["recording", "synthetic"]
+    kind: SourceKind = Field(description="a device is there as long as it sends", examples=["synthetic"])
     duration_s: float | None = Field(description="s; null when unknown", examples=[120.0])
     worn: Worn | None = Field(description="what measures the person; null when unknown", examples=["lower_body"])
     task: Task | None = Field(description="what the person does; null when unknown", examples=["walk"])
@@ -50,11 +48,11 @@ class SourcesOut(BaseModel):
 
 @router.get("", responses=documented())
 def list_sources(gateway: Context) -> SourcesOut:
-    """Recordings that the ingest has at hand, and the simulated walkers."""
+    """Devices that send to the ingest, recordings that it has at hand, and the simulated people."""
     try:
-        recordings, ready = gateway.control.recordings(), True
+        offered, ready = gateway.control.offered(), True
     except ControlUnavailable:
-        recordings, ready = [], False
+        offered, ready = [], False
     sources = [
         SourceOut(
             id=each.id,
@@ -64,7 +62,7 @@ def list_sources(gateway: Context) -> SourcesOut:
             worn=each.worn,
             task=each.task,
         )
-        for each in (*recordings, *SYNTHETIC_SOURCES)
+        for each in (*offered, *SYNTHETIC_SOURCES)
     ]
     estimators = [
         EstimatorOut(

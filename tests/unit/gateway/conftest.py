@@ -13,6 +13,8 @@ from services.gateway.live.hub import LiveHub
 from services.gateway.settings import GatewaySettings
 from tests.unit.gateway.walk import contact_at, describe, metrics_at, pose_at, stride_at
 
+CAMERA = "device:kinect?port=7788"
+
 
 @dataclass
 class FakeControl:
@@ -41,9 +43,10 @@ class FakeControl:
         self.marked.append((session, last_s, at_s))
         return 9.4, 9.4 + last_s
 
-    def recordings(self) -> list[Source]:
+    def offered(self) -> list[Source]:
         self._fail()
-        return [Source("some_walk", "A recorded walk", "recording", 49.0)]
+        camera = Source(CAMERA, "Kinect on port 7788", "device", None, "camera")
+        return [camera, Source("some_walk", "A recorded walk", "recording", 49.0)]
 
     def _fail(self) -> None:
         if self.trouble is not None:

@@ -15,9 +15,10 @@ PALETTE = DIST.parents[1] / "web" / "src" / "palette.js"
 
 
 @pytest.mark.skipif(shutil.which("node") is None, reason="node is not installed")
-def test_page_modules():
+@pytest.mark.parametrize("name", ["page", "whole_body"])
+def test_page_modules(name):
     done = subprocess.run(
-        ["node", "--test", str(HERE / "page.test.mjs")], capture_output=True, text=True, timeout=120, check=False
+        ["node", "--test", str(HERE / f"{name}.test.mjs")], capture_output=True, text=True, timeout=120, check=False
     )
     assert done.returncode == 0, done.stdout + done.stderr
 

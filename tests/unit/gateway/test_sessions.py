@@ -204,7 +204,7 @@ def test_a_session_id_that_is_none_is_refused(client):
 def test_sources_offer_recordings_and_walkers_and_the_default_estimator_first(client, control):
     offer = client.get("/v1/sources").json()
     assert offer["ready"] is True
-    assert {source["kind"] for source in offer["sources"]} == {"recording", "synthetic"}
+    assert {source["kind"] for source in offer["sources"]} == {"recording", "synthetic", "device"}
     assert offer["estimators"][0]["default"] is True
     assert [estimator["default"] for estimator in offer["estimators"]].count(True) == 1
     for source in offer["sources"]:

@@ -34,7 +34,7 @@ const WHOLE_BODY = {
     charts: [aside, { joint: "hip_adduction", title: "Hip adduction", range: [-20, 20] }, deep(forward, [-20, 30])],
     angles: ["hip_adduction", "hip_flexion", "knee_flexion"],
     middle: ["trunk_lean_forward", "trunk_lean_right", "trunk_flexion", "pelvis_obliquity"],
-    compared: "hip_adduction",
+    compared: "trunk_lean",
   },
   walk: {
     charts: [hips, knees, deep(aside, [-20, 20])],

@@ -1,10 +1,13 @@
 // The cameras of a running session, each with its state in a word, how many pictures come, and what was measured of the
 // body.
+import { CAMERAS, cameraWord } from "./camera_words.js";
 import { el, fill, say } from "./dom.js";
 import { number } from "./units.js";
-import { CAMERAS, cameraWord, jointName } from "./words.js";
+import { jointName } from "./words.js";
 
 const SPAN_S = 2;
+const SHOWN_HZ = 25;
+const SLOW_SHARE = 0.7;
 
 /** How many pictures a second came lately, by the times of the data; null before there are some. */
 export class PictureRate {
@@ -27,6 +30,7 @@ export class PictureRate {
 export class CameraPanel {
   constructor(cameras) {
     this.rate = new PictureRate();
+    this.nominal_hz = Math.max(...cameras.map((camera) => camera.rate_hz));
     this.rateText = el("span", { class: "quiet" });
     this.lines = cameras.map((camera) => ({ camera, chip: el("span", { class: "chip small" }, "Waiting") }));
     /** To be shown beside the picture. */
@@ -51,8 +55,7 @@ export class CameraPanel {
 
   add(pose, trail) {
     this.rate.add([...trail, pose]);
-    const rate = this.rate.value;
-    say(this.rateText, rate === null ? "" : `${number(rate, 0)} pictures/s`);
+    say(this.rateText, rateText(this.rate.value, this.nominal_hz));
     for (const { camera, chip } of this.lines) {
       const status = pose.cameras.find((each) => each.camera === camera.name);
       const { word, tone } = status ? cameraWord(status) : { word: "Waiting", tone: "wait" };
@@ -70,6 +73,12 @@ export class CameraPanel {
   tick(stale) {
     for (const node of [this.node, this.chips]) node.classList.toggle("stale", stale);
   }
+}
+
+/** What the camera should send, and what comes of it where that is clearly less: the screen is sent 25 a second. */
+function rateText(rate_hz, nominal_hz) {
+  const slow = rate_hz !== null && rate_hz < SLOW_SHARE * Math.min(nominal_hz, SHOWN_HZ);
+  return slow ? `${number(rate_hz, 0)} of ${number(nominal_hz, 0)} pictures/s` : `${number(nominal_hz, 0)} pictures/s`;
 }
 
 /** Names of segments with their lengths in cm, both sides on one line. */

@@ -1,5 +1,6 @@
 // The floor: who walks now, trouble first, and what has been recorded.
 import { get } from "./api.js";
+import { isExercise } from "./arrangement.js";
 import { el, fill, say, table } from "./dom.js";
 import { extentOf } from "./phase_strip.js";
 import { clock, number, when } from "./units.js";
@@ -170,7 +171,7 @@ class Card {
 /** Three facts that matter for what the person does. */
 function factsOf(session) {
   const time = ["Time", clock(session.elapsed_s)];
-  if (session.task === "knee_flexion") return [time, ["Repetitions", String(session.repetitions)], ["", ""]];
+  if (isExercise(session.task)) return [time, ["Repetitions", String(session.repetitions)], ["", ""]];
   if (session.task === "timed_up_and_go") return [time, ...timedFacts(session.task_phases)];
   const cadence = session.cadence_per_min === null ? "–" : `${number(session.cadence_per_min, 0)} /min`;
   return [time, ["Cadence", cadence], ["Strides", String(session.strides)]];

@@ -2,6 +2,7 @@
 import { AnglesPanel } from "./angles_panel.js";
 import { arrangementOf } from "./arrangement.js";
 import { CameraPanel } from "./camera_panel.js";
+import { UNCALIBRATED } from "./camera_words.js";
 import { ChartPanel } from "./chart_panel.js";
 import { el, fill, say } from "./dom.js";
 import { figureOf } from "./figure.js";
@@ -17,7 +18,7 @@ import { Skeleton2d } from "./skeleton2d.js";
 import { Skeleton3d, canDraw3d } from "./skeleton3d.js";
 import { clock } from "./units.js";
 import { SIDES } from "./vectors.js";
-import { STALE_S, UNCALIBRATED, lastData, misplacedText, stateOf } from "./words.js";
+import { STALE_S, lastData, misplacedText, stateOf } from "./words.js";
 
 export class LiveView {
   constructor(host, session, { onEnd }) {

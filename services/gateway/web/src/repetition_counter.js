@@ -3,7 +3,7 @@ import { el, fill, say } from "./dom.js";
 import { SideBars } from "./side_bars.js";
 import { degrees, number } from "./units.js";
 import { SIDES } from "./vectors.js";
-import { angleTitle } from "./words.js";
+import { angleTitle, jointName } from "./words.js";
 
 const LONGEST_PAUSE_S = 10;
 
@@ -53,10 +53,11 @@ export class RepetitionCounter {
 
   onRepetition(repetition) {
     this.node.hidden = false;
-    const before = this.newest.get(repetition.degree_of_freedom);
-    this.newest.set(repetition.degree_of_freedom, repetition);
     const { degree_of_freedom, side } = repetition;
-    say(this.name, side ? `${angleTitle(degree_of_freedom)}, ${side}` : angleTitle(degree_of_freedom));
+    const movement = `${degree_of_freedom} ${side}`;
+    const before = this.newest.get(movement);
+    this.newest.set(movement, repetition);
+    say(this.name, side ? `${jointName(degree_of_freedom)[0]}, ${side}` : angleTitle(degree_of_freedom));
     say(this.count, String([...this.newest.values()].reduce((sum, each) => sum + each.index + 1, 0)));
     const measures = measuresOf(repetition);
     this.tell({

@@ -1,9 +1,10 @@
 // Repetitions of an exercise afterwards: a bar each from its least to its largest angle, and the same as a table.
 import { el, svg, table } from "./dom.js";
 import { Drawing, bottomAxis, leftAxis, ticksOf } from "./drawing.js";
-import { INVALID, SIDE_COLOUR } from "./palette.js";
+import { INVALID, PELVIS, SIDE_COLOUR } from "./palette.js";
 import { measuresOf } from "./repetition_counter.js";
 import { degrees, number } from "./units.js";
+import { SIDES } from "./vectors.js";
 
 const HEIGHT = 230;
 const MARGIN = { left: 46, right: 14, top: 8, bottom: 42 };
@@ -25,10 +26,11 @@ export class RepetitionChart {
     const low = Math.min(0, 10 * Math.floor(Math.min(...spans.flat()) / 10));
     const high = Math.max(10, 10 * Math.ceil(Math.max(...spans.flat()) / 10));
     const [right, bottom] = [width - MARGIN.right, HEIGHT - MARGIN.bottom];
-    const step = (right - MARGIN.left) / this.repetitions.length;
+    const slots = slotsOf(this.repetitions);
+    const step = (right - MARGIN.left) / slots.count;
     const across = (count) => MARGIN.left + step * (count - 0.5);
     const up = (value) => bottom - ((value - low) / (high - low)) * (bottom - MARGIN.top);
-    const counts = ticksOf(1, this.repetitions.length, Math.min(14, this.repetitions.length)).filter(Number.isInteger);
+    const counts = ticksOf(1, slots.count, Math.min(14, slots.count)).filter(Number.isInteger);
     return [
       ...leftAxis(ticksOf(low, high, 7), up, {
         left: MARGIN.left,
@@ -43,13 +45,14 @@ export class RepetitionChart {
         middle: (MARGIN.left + right) / 2,
       }),
       ...this.repetitions.map((each, place) => {
-        const bar = Math.min(WIDEST_BAR_PX, 0.62 * step);
+        const bar = Math.min(WIDEST_BAR_PX, (0.62 * step) / slots.beside);
         const [least, largest] = spans[place];
+        const { slot, shift } = slots.places[place];
         const paint = each.valid
-          ? { fill: SIDE_COLOUR[each.side], "fill-opacity": 0.75 }
+          ? { fill: SIDE_COLOUR[each.side] ?? PELVIS, "fill-opacity": 0.75 }
           : { fill: "none", stroke: INVALID, "stroke-width": 2 };
         const box = {
-          x: across(place + 1) - bar / 2,
+          x: across(slot) - bar / 2 + shift * (bar + 1.5),
           y: up(largest),
           width: bar,
           height: up(least) - up(largest),
@@ -65,7 +68,46 @@ export class RepetitionChart {
   }
 }
 
-/** Angles and times of each repetition. */
+/**
+ * Where each repetition's bar stands: the n-th of the left side beside the n-th of the right. `slot` counts from one,
+ * `shift` is in bars from the slot's middle; `count` slots, `beside` bars in each.
+ */
+export function slotsOf(repetitions) {
+  const sides = SIDES.filter((side) => repetitions.some((each) => each.side === side));
+  const beside = Math.max(1, sides.length);
+  const counts = {};
+  const places = repetitions.map(({ side }) => {
+    counts[side] = (counts[side] ?? 0) + 1;
+    return { slot: counts[side], shift: beside > 1 ? (side === "left" ? -0.5 : 0.5) : 0 };
+  });
+  return { count: Math.max(1, ...Object.values(counts)), beside, places };
+}
+
+/** Angles and times of each repetition of a movement of the whole body, both knees beside each other. */
+export function movementTable(repetitions) {
+  const sided = repetitions.some((each) => each.side !== null);
+  const knees = sided ? [] : SIDES.filter((side) => repetitions.some((each) => `knee_flexion_${side}` in each.ranges));
+  const rows = repetitions.map((each, place) =>
+    el(
+      "tr",
+      {},
+      el("th", { scope: "row" }, String(place + 1)),
+      sided ? el("td", { class: each.side }, each.side === "left" ? "Left" : "Right") : null,
+      ...[measuresOf(each).range, each.turn_angle].map((angle) => cell(`${number(degrees(angle), 0)}°`)),
+      ...[each.turn_s - each.start_s, each.hold_s, each.end_s - each.turn_s].map((time_s) => cell(seconds(time_s))),
+      ...knees.map((side) => cell(`${number(degrees(each.ranges[`knee_flexion_${side}`]), 0)}°`)),
+      el("td", { class: "quiet" }, refusal(each)),
+    ),
+  );
+  const kneeNames = knees.map((side) => `Knee ${side === "left" ? "L" : "R"}#`);
+  const columns = ["", ...(sided ? ["Side"] : []), "Range#", "Farthest#", "There#", "Hold#", "Back#", ...kneeNames, ""];
+  return table(columns, el("tbody", {}, ...rows));
+}
+
+const seconds = (time_s) => (time_s === null ? "–" : `${number(time_s, 1)} s`);
+const refusal = (each) => (each.valid ? "" : `does not count: ${each.rejected_because ?? "not known"}`);
+
+/** Angles and times of each repetition of a knee. */
 export function repetitionTable(repetitions) {
   const bothSides = new Set(repetitions.map((each) => each.side)).size > 1;
   const rows = repetitions.map((each, place) => {
@@ -78,7 +120,7 @@ export function repetitionTable(repetitions) {
       bothSides ? el("td", { class: each.side }, side) : null,
       ...[range, largest, smallest].map((angle) => cell(`${number(degrees(angle), 0)}°`)),
       ...[flexing_s, extending_s].map((time_s) => cell(`${number(time_s, 1)} s`)),
-      el("td", { class: "quiet" }, each.valid ? "" : `does not count: ${each.rejected_because ?? "not known"}`),
+      el("td", { class: "quiet" }, refusal(each)),
     );
   });
   const columns = ["", ...(bothSides ? ["Side"] : []), "Range#", "Largest#", "Least#", "Flexing#", "Extending#", ""];

@@ -11,9 +11,9 @@ const isCount = ({ name }) => /^(strides|repetitions)_/.test(name);
 /** A metric that rests on something, even if too little to be told. A count of nothing is not one. */
 export const isSeen = (metric) => metric.strides > 0 || (metric.value !== null && !isCount(metric));
 
-/** A row per metric, a column per side that has been seen; null when none has. */
+/** A row per metric, a column per side that has been seen, and one for what has none; null when nothing was seen. */
 export function sideTable(metrics) {
-  const sides = SIDES.filter((side) => metrics.some((metric) => metric.side === side && isSeen(metric)));
+  const sides = [...SIDES, null].filter((side) => metrics.some((metric) => metric.side === side && isSeen(metric)));
   if (sides.length === 0) return null;
   const find = (name, side) => metrics.find((metric) => metric.name === name && metric.side === side);
   const names = new Set(metrics.filter((metric) => isSeen(metric) || isCount(metric)).map((metric) => metric.name));
@@ -24,21 +24,26 @@ export function sideTable(metrics) {
       "tr",
       {},
       el("th", { scope: "row" }, metricName(name), unit ? el("span", { class: "unit" }, ` ${unit}`) : null),
-      ...cells.map(cell),
+      ...cells.map((metric) => cell(metric)),
     );
   });
   const head = [
     el("th", { scope: "col" }, ""),
-    ...sides.map((side) => el("th", { scope: "col", class: `number ${side}` }, side === "left" ? "Left" : "Right")),
+    ...sides.map((side) => el("th", { scope: "col", class: `number ${side ?? ""}` }, columnName(side, sides))),
   ];
   return el("table", {}, el("thead", {}, el("tr", {}, ...head)), el("tbody", {}, ...rows));
+}
+
+function columnName(side, sides) {
+  if (side !== null) return side === "left" ? "Left" : "Right";
+  return sides.length > 1 ? "Whole body" : "";
 }
 
 /** Metrics of the whole body under a heading; null when none has been seen. */
 export function ratioTable(title, meaning, metrics = []) {
   if (!metrics.some(isSeen)) return null;
   const seen = metrics.filter(isSeen);
-  const rows = seen.map((metric) => el("tr", {}, el("th", { scope: "row" }, metricName(metric.name)), cell(metric)));
+  const rows = seen.map((metric) => el("tr", {}, el("th", { scope: "row" }, metricName(metric.name)), cell(metric, true)));
   return el(
     "div",
     {},
@@ -56,7 +61,7 @@ export function metricTile(metric, named = false) {
   return el(
     "div",
     { class: "tile" },
-    el("span", { class: "name" }, metricName(metric.name) + (named ? `, ${metric.side}` : "")),
+    el("span", { class: "name" }, metricName(metric.name) + (named && metric.side ? `, ${metric.side}` : "")),
     el(
       "span",
       {},
@@ -76,10 +81,10 @@ function restsOn({ name }) {
   return name.startsWith("repetition") ? "repetitions" : "strides";
 }
 
-function cell(metric) {
-  if (!metric) return el("td", { class: "number" }, "–");
+function cell(metric, named = false) {
+  if (!metric) return el("td", { class: "number" }, "");
   const { factor, digits, unit } = shown(metric.unit, metric.name);
-  const shownUnit = metric.side === null ? unit : "";
+  const shownUnit = named ? unit : "";
   if (metric.value === null) return el("td", { class: "number quiet", title: metric.withheld_because }, "–");
   const spread = metric.spread === null ? "" : ` ± ${number(metric.spread * factor, digits)}`;
   return el(

@@ -1,14 +1,25 @@
 // A session that is over: numbers with their spread, what was done, mean curves, files. What does not apply is absent.
 import { get } from "./api.js";
+import { isExercise } from "./arrangement.js";
+import { NEVER_CALIBRATED } from "./camera_words.js";
 import { MeanChart } from "./charts.js";
 import { el, fill } from "./dom.js";
 import { SIDES } from "./vectors.js";
 import { PatientLink } from "./patient_link.js";
 import { PhaseTimeline, attemptsOf, phaseTable } from "./phase_timeline.js";
-import { RepetitionChart, repetitionTable } from "./repetition_report.js";
+import { rangesTable } from "./ranges_table.js";
+import { RepetitionChart, movementTable, repetitionTable } from "./repetition_report.js";
 import { isSeen, metricTile, ratioTable, sample, sideTable } from "./report_tables.js";
 import { bytes, clock, number, when } from "./units.js";
-import { STORED_WORDS, TASKS, headlineRank, jointName, metricGroup, misplacedText, qualityText } from "./words.js";
+import {
+  STORED_WORDS,
+  TASKS,
+  headlineRank,
+  jointName,
+  metricGroup,
+  misplacedText,
+  qualityText,
+} from "./words.js";
 
 const FIRST_CURVES = ["hip_flexion", "knee_flexion"];
 const EXERCISE_HEADLINES = [
@@ -17,6 +28,13 @@ const EXERCISE_HEADLINES = [
   "repetition_flexion_largest",
   "repetition_flexion_smallest",
   "repetition_tempo",
+];
+const BODY_HEADLINES = [
+  "repetitions_counted",
+  "repetition_range",
+  "repetition_hold",
+  "repetition_tempo",
+  "repetition_range_slope",
 ];
 const PARTS = ["metrics", "curves", "phases", "repetitions", "recordings"];
 
@@ -68,6 +86,7 @@ export class ReportView {
       ),
       session.reason ? el("p", { class: "banner" }, session.reason) : null,
       misplaced ? el("p", { class: "banner" }, misplaced) : null,
+      session.absolute === false ? el("p", { class: "banner" }, NEVER_CALIBRATED) : null,
       this.quality,
     );
   }
@@ -105,7 +124,7 @@ export class ReportView {
 
   /** Nobody walks in an exercise: what swings to and fro there are no strides. */
   get walks() {
-    return this.session.task !== "knee_flexion";
+    return !isExercise(this.session.task);
   }
 
   showMetrics(metrics) {
@@ -113,7 +132,7 @@ export class ReportView {
     this.quality.textContent = qualityText(metrics, this.session);
     this.strides.hidden = !this.walks;
     if (this.walks) this.showStrides(groups);
-    else this.showExercise(groups.exercise ?? []);
+    else this.showExercise(groups.exercise ?? [], groups.symmetry);
   }
 
   showStrides({ headlines = [], sides = [], counts = [], symmetry, legs, variability }) {
@@ -131,15 +150,18 @@ export class ReportView {
     this.more.hidden = tables.length === 0;
   }
 
-  showExercise(metrics) {
+  showExercise(metrics, symmetry) {
     const list = sideTable(metrics);
+    const headlines = this.session.task === "knee_flexion" ? EXERCISE_HEADLINES : BODY_HEADLINES;
     const bothKnees = SIDES.every((side) => metrics.some((metric) => metric.side === side && isSeen(metric)));
-    const tiles = metrics.filter((metric) => isSeen(metric) && EXERCISE_HEADLINES.includes(metric.name));
+    const tiles = metrics.filter((metric) => isSeen(metric) && headlines.includes(metric.name));
     fill(this.tiles, ...tiles.map((metric) => metricTile(metric, bothKnees)));
     this.tiles.hidden = tiles.length === 0;
     const meaning = el("span", { class: "quiet" }, "mean ± standard deviation over repetitions");
     const nothing = el("p", { class: "quiet" }, "No repetition was found.");
-    fill(this.exercise, el("div", { class: "panel-head" }, el("h2", {}, "Exercise"), meaning), list ?? nothing);
+    const head = el("div", { class: "panel-head" }, el("h2", {}, "Exercise"), meaning);
+    const equal = ratioTable("Symmetry", "larger side / smaller side, 1.00 is equal", symmetry);
+    fill(this.exercise, head, list ?? nothing, equal && el("div", { class: "below" }, equal));
     this.exercise.hidden = false;
   }
 
@@ -161,9 +183,18 @@ export class ReportView {
     const host = el("div", { class: "drawn" });
     const meaning = el("span", { class: "quiet" }, "least to largest angle of each; hollow ones do not count");
     const head = el("div", { class: "panel-head" }, el("h2", {}, "Repetitions"), meaning);
-    const list = repetitionTable(repetitions);
+    const list = this.session.task === "knee_flexion" ? repetitionTable(repetitions) : movementTable(repetitions);
+    this.showRanges(repetitions);
     this.curves.append(el("section", { class: "panel", "aria-label": "Repetitions" }, head, host, list));
     this.charts.push(new RepetitionChart(host, repetitions));
+  }
+
+  showRanges(repetitions) {
+    const list = rangesTable(repetitions);
+    if (!list) return;
+    const meaning = el("span", { class: "quiet" }, "within a repetition, mean ± standard deviation");
+    const head = el("div", { class: "panel-head" }, el("h2", {}, "Ranges of motion"), meaning);
+    this.exercise.after(el("section", { class: "panel", "aria-label": "Ranges of motion" }, head, list));
   }
 
   showCurves(curves) {

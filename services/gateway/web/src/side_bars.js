@@ -30,14 +30,11 @@ export class SideBars {
     );
   }
 
-  /** A repetition tells both sides, or the one that moved. */
-  add({ ranges, degree_of_freedom, side, range }) {
-    for (const one of SIDES) {
-      const told = ranges[`${this.joint}_${one}`];
-      const alone = degree_of_freedom === `${this.joint}_${one}`;
-      if (side === null ? told !== undefined : alone) this.seen[one] = alone ? range : told;
-    }
-    const largest = Math.max(0.01, ...Object.values(this.seen));
+  /** A repetition of both sides tells each by its range, one of a side tells that side. */
+  add({ ranges, side, range }) {
+    if (side !== null) this.seen[side] = range;
+    else for (const one of SIDES) this.seen[one] = ranges[`${this.joint}_${one}`] ?? this.seen[one];
+    const largest = Math.max(0.01, ...Object.values(this.seen).filter((range) => range !== undefined));
     for (const { side: one, bar, value } of this.bars) {
       const known = this.seen[one];
       bar.style.width = `${known === undefined ? 0 : (100 * known) / largest}%`;

@@ -14,8 +14,23 @@ const PATHS = [
   ["turning", "Free, with turns"],
   ["straight", "Straight: treadmill, in place, corridor"],
 ];
-const KINDS = { recording: "Recorded", synthetic: "Simulated" };
-const WORN = { lower_body: "Pelvis and both legs", knee: "Single knee" };
+const KINDS = { device: "Live camera", recording: "Recorded", synthetic: "Simulated" };
+const WORN = {
+  lower_body: "Sensors: pelvis and both legs",
+  knee: "Sensors: single knee",
+  camera: "Camera: whole body",
+  camera_and_sensors: "Camera and sensors together",
+};
+/** With both, one may also be left aside. */
+const FITTING = { camera_and_sensors: ["camera_and_sensors", "camera", "lower_body"] };
+const SEEN_BY_CAMERA = ["walk", "squat", "stepping", "trunk_tilt_sagittal", "trunk_tilt_frontal"];
+const POSSIBLE = {
+  lower_body: ["walk", "timed_up_and_go"],
+  knee: ["walk", "timed_up_and_go", "knee_flexion"],
+  camera: SEEN_BY_CAMERA,
+  camera_and_sensors: SEEN_BY_CAMERA,
+};
+const asTheSourceSays = () => el("option", { value: "" }, "As the source says");
 const TIMED = "timed_up_and_go";
 const WALKWAY_M = 3;
 
@@ -23,12 +38,7 @@ export class StartDialog {
   constructor({ onStarted }) {
     this.onStarted = onStarted;
     this.source = el("select", { id: "source", required: true, onchange: () => this.fit() });
-    this.task = el(
-      "select",
-      { id: "task", onchange: () => this.fit() },
-      el("option", { value: "" }, "As the source says"),
-      ...Object.entries(TASKS).map(([task, name]) => el("option", { value: task }, name)),
-    );
+    this.task = el("select", { id: "task", onchange: () => this.fit() });
     this.walkway = el("input", {
       id: "walkway",
       type: "number",
@@ -41,6 +51,8 @@ export class StartDialog {
     this.speed = el("select", { id: "speed" }, ...SPEEDS.map(([value, name]) => el("option", { value }, name)));
     this.estimator = el("select", { id: "estimator" });
     this.path = el("select", { id: "walk-path" }, ...PATHS.map(([value, name]) => el("option", { value }, name)));
+    this.speedField = field("Speed", this.speed);
+    this.pathField = field("Path", this.path);
     this.patient = el("select", { id: "patient" });
     this.problem = el("p", { class: "banner", role: "alert", hidden: true });
     this.go = el("button", { class: "primary", type: "submit" }, "Start");
@@ -51,9 +63,9 @@ export class StartDialog {
       field("Source", this.source),
       field("Task", this.task),
       this.walkwayField,
-      field("Speed", this.speed),
+      this.speedField,
       field("Estimator", this.estimator),
-      field("Path", this.path),
+      this.pathField,
       field("Patient", this.patient),
       this.problem,
       el(
@@ -93,8 +105,7 @@ export class StartDialog {
           el("optgroup", { label }, ...some.map((source) => el("option", { value: source.id }, source.title))),
         ),
     );
-    this.worn = Object.fromEntries(sources.map((source) => [source.id, source.worn]));
-    this.tasks = Object.fromEntries(sources.map((source) => [source.id, source.task]));
+    this.sources = new Map(sources.map((source) => [source.id, source]));
     this.estimators = estimators;
     fill(
       this.patient,
@@ -104,19 +115,18 @@ export class StartDialog {
     this.fit();
   }
 
-  /** Offer what fits the source: estimators for what is worn, where that is known, and a walkway for a timed test. */
+  /** Offer what fits the source: tasks and estimators for what measures, where that is known; a walkway for a timed
+   * test, a path for sensors, and no speed for what is there now. */
   fit() {
-    const worn = this.worn?.[this.source.value] ?? null;
-    const chosen = this.estimator.value;
-    const groups = Object.keys(WORN).filter((each) => worn === null || each === worn);
-    fill(
-      this.estimator,
-      el("option", { value: "" }, "As the source says"),
-      ...groups.map((group) => this.estimatorGroup(group)),
-    );
-    if ([...this.estimator.options].some((option) => option.value === chosen)) this.estimator.value = chosen;
-    const task = this.task.value || this.tasks?.[this.source.value];
-    this.walkwayField.hidden = task !== TIMED;
+    const source = this.sources?.get(this.source.value);
+    const worn = source?.worn ?? null;
+    const groups = worn === null ? Object.keys(WORN) : (FITTING[worn] ?? [worn]);
+    offerOptions(this.estimator, [asTheSourceSays(), ...groups.map((group) => this.estimatorGroup(group))]);
+    const tasks = Object.entries(TASKS).filter(([task]) => worn === null || POSSIBLE[worn].includes(task));
+    offerOptions(this.task, [asTheSourceSays(), ...tasks.map(([task, name]) => el("option", { value: task }, name))]);
+    this.walkwayField.hidden = (this.task.value || source?.task) !== TIMED;
+    this.pathField.hidden = worn === "camera";
+    this.speedField.hidden = source?.kind === "device";
   }
 
   estimatorGroup(group) {
@@ -132,9 +142,9 @@ export class StartDialog {
     try {
       const session = await post("/sessions", {
         source: this.source.value,
-        speed: this.speed.value === "max" ? null : Number(this.speed.value),
+        speed: this.speedField.hidden ? 1 : this.speed.value === "max" ? null : Number(this.speed.value),
         estimator: this.estimator.value || null,
-        walk_path: this.path.value || null,
+        walk_path: this.pathField.hidden ? null : this.path.value || null,
         task: this.task.value || null,
         walkway_m: this.walkwayField.hidden || this.walkway.value === "" ? null : Number(this.walkway.value),
         patient: this.patient.value || null,
@@ -152,6 +162,13 @@ export class StartDialog {
     this.problem.textContent = text;
     this.problem.hidden = text === "";
   }
+}
+
+/** New options; what was chosen stays chosen where it still is one. */
+function offerOptions(select, options) {
+  const chosen = select.value;
+  fill(select, ...options);
+  if ([...select.options].some((option) => option.value === chosen)) select.value = chosen;
 }
 
 const field = (name, input) => el("label", { class: "field", for: input.id }, el("span", {}, name), input);

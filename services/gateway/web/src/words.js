@@ -1,5 +1,8 @@
 // Every sentence about a state, in one place: the same words everywhere. Never normal or abnormal.
 
+import { isExercise } from "./arrangement.js";
+import { cameraWord, seesNobody } from "./camera_words.js";
+
 const SIDES = { left: "Left", right: "Right" };
 
 /** `shank_left` as "Left shank". */
@@ -43,6 +46,9 @@ const METRICS = {
   repetition_range: "Range",
   repetition_flexion_largest: "Peak flexion",
   repetition_flexion_smallest: "Least flexion (extension deficit)",
+  repetition_time_out: "Time there",
+  repetition_time_back: "Time back",
+  repetition_hold: "Hold",
   repetition_time_flexing: "Time flexing",
   repetition_time_extending: "Time extending",
   repetition_peak_velocity: "Peak velocity",
@@ -68,15 +74,15 @@ const HEADLINES = [...TIMED_HEADLINES, "walking_speed", "cadence", "stride_lengt
 export function metricName(name) {
   for (const suffix of [RATIO, VARIATION, DEVIATION])
     if (name.endsWith(suffix)) return metricName(name.slice(0, -suffix.length));
-  return METRICS[name] ?? jointName(name)[0];
+  return METRICS[name] ?? jointName(name.replace(/^repetition_/, ""))[0];
 }
 
 /** Where a metric belongs in a report; null for those that the spread beside the mean says already. */
 export function metricGroup({ name, side }) {
   if (name.endsWith(DEVIATION)) return null;
   if (name.startsWith(TIMED)) return TIMED_HEADLINES.includes(name) ? "headlines" : "timed";
-  if (name.startsWith("repetition")) return name.endsWith(VARIATION) ? null : "exercise";
   if (name.endsWith(RATIO)) return "symmetry";
+  if (name.startsWith("repetition")) return name.endsWith(VARIATION) ? null : "exercise";
   if (name.startsWith("rhythm_side_")) return "legs";
   if (name.endsWith(VARIATION)) return side === null ? "variability" : null;
   if (side !== null) return name.startsWith("strides_") ? "counts" : "sides";
@@ -93,7 +99,7 @@ export function qualityText(metrics, { datum, task }) {
   const told = ([name, words, one = words]) =>
     count(name) > 0 ? `${count(name)} ${count(name) === 1 ? one : words}` : null;
   const listed = (counts) => counts.map(told).filter(Boolean).join(", ");
-  const strides = listed(task === "knee_flexion" ? REPETITION_COUNTS : STRIDE_COUNTS);
+  const strides = listed(isExercise(task) ? REPETITION_COUNTS : STRIDE_COUNTS);
   const facts = [listed(ATTEMPT_COUNTS), strides, datum ? `zero is ${datum}` : null].filter(Boolean);
   return facts.length > 0 ? `Quality: ${facts.join("  ·  ")}` : "";
 }
@@ -133,28 +139,6 @@ export const TASKS = {
   trunk_tilt_sagittal: "Trunk tilt, forward",
   trunk_tilt_frontal: "Trunk tilt, to the side",
 };
-
-/** Depth cameras. */
-export const CAMERAS = { kinect_v2: "Kinect v2", azure_kinect: "Azure Kinect", other: "Depth camera" };
-
-/** What a camera's state means to a therapist. */
-export function cameraWord({ state, people }) {
-  if (state === "missing") return { word: "No pictures", tone: "lost" };
-  if (state === "stuck") return { word: "Picture stands still", tone: "check" };
-  if (state === "unused") return { word: "Not used", tone: "done" };
-  if (people === 0) return { word: "Nobody in view", tone: "check" };
-  if (people > 1) return { word: `${people} people in view`, tone: "check" };
-  if (state === "rejected") return { word: "Partly covered", tone: "check" };
-  if (state === "calibrating") return { word: "Calibrating", tone: "wait" };
-  return { word: "Good", tone: "good" };
-}
-
-/** A second person in view is no trouble by itself: one is followed. */
-const seesNobody = ({ state, people }) =>
-  ["missing", "stuck", "rejected"].includes(state) || (people === 0 && state !== "unused");
-
-/** What to do about angles that refer to no known posture. */
-export const UNCALIBRATED = "Angles are uncalibrated: stand upright and still for a second.";
 
 /** The parts of a timed up and go, in order. */
 export const PHASES = {
