@@ -17,6 +17,7 @@ class Reason(StrEnum):
     WRONG_UNITS = "wrong_units"
     UNDECODABLE = "undecodable"
     UNKNOWN_SENSOR = "unknown_sensor"
+    UNKNOWN_SENDER = "unknown_sender"
     UNKNOWN_SESSION = "unknown_session"
     WRONG_SHAPE = "wrong_shape"
     LATE = "late"

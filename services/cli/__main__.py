@@ -14,6 +14,7 @@ from schemas.rhythm import KnownRhythm
 from schemas.session import WalkPath
 from schemas.vocabulary import ESTIMATORS, Task
 from services.cli.console import err, out, told
+from services.cli.send_skeletons import send_skeletons
 from services.ingest.choices import Choices
 
 app = typer.Typer(
@@ -28,7 +29,7 @@ Source = Annotated[
         metavar="PATH",
         help="A folder with a recording.toml, an .mcap file of Ambula, the name of a shipped manifest"
         " (neura_s02_walk), synthetic:walk?speed=1.1&seed=3, synthetic:march?metronome=70&seed=3,"
-        " synthetic:tug?seed=3 or synthetic:knee?exercise=1&seed=3",
+        " synthetic:tug?seed=3 or synthetic:knee?exercise=1&seed=3; or a Kinect: device:kinect?port=7788",
     ),
 ]
 Estimator = Annotated[
@@ -118,7 +119,7 @@ def replay(
             TextColumn("{task.description}"), BarColumn(), TextColumn("{task.fields[at]}"), console=err
         ) as bar:
             replaying = bar.add_task("replaying", total=description.duration_s, at="")
-            for news in watch.follow(description):
+            for news in live.followed(bus, watch, description):
                 if isinstance(news, SessionMetrics):
                     out.print(show.metrics_table(news, description.title))
                 else:
@@ -195,6 +196,9 @@ def synth(
         motion, options = next(((name, said) for name, said in asked.items() if said is not None), ("walk", walk))
         write_recording(folder, options, _walk_path(straight) or "turning", motion=motion)
     out.print(f"written: {folder}/recording.toml and its CSV files; try: ambula run {folder} --out out")
+
+
+app.command()(send_skeletons)
 
 
 @app.command(context_settings={"ignore_unknown_options": True})

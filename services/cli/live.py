@@ -13,6 +13,7 @@ from schemas.session import SessionDescription
 from schemas.signals import METRICS, command_key, progress_key, replay_key, stream_key
 from services.bus.connection import Bus
 from services.bus.received import Received
+from services.cli.interrupt import on_interrupt
 from services.ingest.choices import AS_THE_SOURCE_SAYS, Choices
 
 SILENCE_S = 60.0
@@ -67,6 +68,12 @@ def mark_standing(bus: Bus, session: str, last_s: float) -> tuple[float, float]:
     if "error" in answer:
         raise NotStarted(answer["error"])
     return float(answer["from_s"]), float(answer["to_s"])
+
+
+def stop_session(bus: Bus, session: str) -> None:
+    """End a session's streams. Nothing happens when no ingest runs it."""
+    order = {"session": session}
+    bus.ask(command_key(bus.settings.site, "ingest", "stop"), body=json.dumps(order).encode(), timeout_s=5)
 
 
 class Watch:
@@ -125,3 +132,10 @@ class Watch:
         answers = [each.payload for each in self._bus.ask(key, {"from": "0", "most": "100000"}) if each.attachment]
         said = [SessionMetrics.model_validate_json(payload) for payload in answers if payload]
         return said[-1] if said else None
+
+
+def followed(bus: Bus, watch: Watch, description: SessionDescription) -> Iterator[float | SessionMetrics]:
+    """`watch.follow`. Ctrl-C ends a device's session, whose metrics then come; any other source plays on without us."""
+    is_device = description.origin == "device"
+    with on_interrupt((lambda: stop_session(bus, description.session)) if is_device else None):
+        yield from watch.follow(description)

@@ -15,10 +15,12 @@ from schemas.rhythm import LearnedRhythm
 from schemas.vocabulary import BODY_MODELS
 from services.cli import tables
 from services.cli.assembly import build_chain
+from services.cli.interrupt import on_interrupt
 from services.cli.rhythms import FILE_NAME
 from services.flow.chain import Chain
 from services.flow.message import Message
 from services.ingest.choices import AS_THE_SOURCE_SAYS, Choices
+from services.ingest.driver import LiveSource
 from services.ingest.source import Source, iter_messages, open_chosen
 
 
@@ -61,13 +63,17 @@ class RunFiles:
 
 
 def run(spec: str, folder: Path, console: Console, choices: Choices = AS_THE_SOURCE_SAYS) -> dict[str, Any]:
-    """Run a source to its end; the header of metrics.json. Raises SourceError for a source that cannot be read."""
+    """Run a source to its end, a device's to Ctrl-C; the header of metrics.json.
+
+    Raises SourceError for a source that cannot be read.
+    """
     source = open_chosen(spec, choices)
     description = source.describe()
     chain = build_chain(description)
     files = RunFiles(folder)
     columns = (TextColumn("{task.description}"), BarColumn(), TextColumn("{task.fields[at]}"), TimeRemainingColumn())
-    with Progress(*columns, console=console, transient=True) as progress:
+    stop = source.stop if isinstance(source, LiveSource) else None
+    with on_interrupt(stop), Progress(*columns, console=console, transient=True) as progress:
         bar = progress.add_task(description.title, total=description.duration_s, at="")
         for message in iter_messages(source):
             for produced in chain.push(message):

@@ -37,6 +37,17 @@ class RealTime:
         return round((now_s - self.started_s) * self.speed * 1e9)
 
 
+@dataclass(frozen=True)
+class AsItComes:
+    """A device: whatever is there is due."""
+
+    paced: bool = False
+
+    def limit_ns(self, _now_s: float) -> int:
+        """No limit."""
+        return FAR_NS
+
+
 @dataclass
 class _Reader:
     """How far one service has come, ns, and when it last made a step."""

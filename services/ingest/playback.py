@@ -17,9 +17,9 @@ from services.bus.logs import event
 from services.bus.publisher import StreamPublisher
 from services.flow.raw_streams import raw_streams
 from services.ingest.batching import Batcher, BatchGovernor
-from services.ingest.driver import Source, SourceMessage
+from services.ingest.driver import Feed, LiveSource, Source, SourceMessage
 from services.ingest.orders import InvalidOrder, MarkOrder, StartOrder
-from services.ingest.pacing import AsFastAsFollowed, Pace, Readers, RealTime
+from services.ingest.pacing import AsFastAsFollowed, AsItComes, Pace, Readers, RealTime
 from services.ingest.parameters import PARAMETERS, IngestParameters
 
 ARCHIVE = "archive"
@@ -59,6 +59,11 @@ class ReadAhead:
         """Everything was taken."""
         return self.exhausted and not self._ready
 
+    def close(self) -> None:
+        """Read no further than the chunk begun."""
+        self.exhausted = True
+        self._ready.clear()
+
     def _more(self) -> None:
         self._reading = self._threads.submit(lambda: list(itertools.islice(self._messages, self._chunk)))
 
@@ -81,10 +86,9 @@ class Playback:
         self.ended_at_s: float | None = None
         self._source = source
         self._parameters = parameters
-        self._ahead = ReadAhead(source.messages(), threads, parameters.chunk)
-        self._pace: Pace = (
-            AsFastAsFollowed(self.readers, now_s, parameters) if order.speed is None else RealTime(now_s, order.speed)
-        )
+        self._live = source if isinstance(source, LiveSource) else None
+        self._feed: Feed = self._live or ReadAhead(source.messages(), threads, parameters.chunk)
+        self._pace = self._pace_of(order, now_s)
         self._governor = BatchGovernor(parameters, ticks=order.ticks)
         self._least_ticks = order.ticks
         self._batcher = Batcher(order.ticks)
@@ -103,7 +107,7 @@ class Playback:
             return
         try:
             self._send_due(now_s)
-            if self._ahead.is_empty:
+            if self._feed.is_empty:
                 self.end(now_s)
         except Exception as error:
             self.end(now_s)
@@ -113,6 +117,7 @@ class Playback:
         """Close the streams. Rings and token stay until the session is recorded."""
         if self.ended_at_s is not None:
             return
+        self._feed.close()
         for message in self._batcher.flush():
             self._send(message)
         for publisher in self._publishers.values():
@@ -160,11 +165,11 @@ class Playback:
         return self.is_recorded() or quiet_s >= self._parameters.linger_s
 
     def health(self) -> SessionHealth:
-        """What was left out of the source."""
+        """What was left out of the source, and what a device's own link lost."""
         return SessionHealth(
             session=self.description.session,
             captured_ns=self._captured_ns,
-            inputs=[],
+            inputs=self._live.counts() if self._live is not None else [],
             rejections=self._source.rejections(),
         )
 
@@ -174,17 +179,25 @@ class Playback:
         for publisher in self._publishers.values():
             publisher.close()
 
+    def _pace_of(self, order: StartOrder, now_s: float) -> Pace:
+        """A device sets its own pace, whatever was asked for."""
+        if self._live is not None:
+            return AsItComes()
+        if order.speed is None:
+            return AsFastAsFollowed(self.readers, now_s, self._parameters)
+        return RealTime(now_s, order.speed)
+
     def _send_due(self, now_s: float) -> None:
         limit_ns = self._pace.limit_ns(now_s)
-        first = self._ahead.peek()
+        first = self._feed.peek()
         lag_s = max(0.0, (limit_ns - first.captured_ns) * 1e-9) if first is not None else 0.0
         if self._pace.paced:
             self._batcher.ticks = max(self._least_ticks, self._governor.observe(now_s, lag_s))
         for _ in range(self._parameters.most_per_pump):
-            message = self._ahead.peek()
+            message = self._feed.peek()
             if message is None or message.captured_ns > limit_ns:
                 return
-            for batch in self._batcher.add(self._ahead.pop()):
+            for batch in self._batcher.add(self._feed.pop()):
                 self._send(batch)
 
     def _send(self, message: SourceMessage) -> None:

@@ -18,8 +18,9 @@ from services.bus.loop import EventLoop
 from services.bus.received import Received
 from services.bus.settings import BusSettings
 from services.flow.rejections import RejectionCounter
+from services.ingest.capture.ports import CapturePorts
 from services.ingest.data import find_data
-from services.ingest.driver import Source
+from services.ingest.driver import LiveSource, Source
 from services.ingest.errors import SourceError
 from services.ingest.manifest import load_manifest
 from services.ingest.orders import InvalidOrder, MarkOrder, StartOrder, StopOrder, parse_order, refusal
@@ -54,7 +55,13 @@ def run_ingest() -> int:
 class IngestService:
     """Orders come on the bus's threads and open their source there; everything that runs, runs on one loop."""
 
-    def __init__(self, bus: Bus, stop: threading.Event, parameters: IngestParameters = PARAMETERS) -> None:
+    def __init__(
+        self,
+        bus: Bus,
+        stop: threading.Event,
+        parameters: IngestParameters = PARAMETERS,
+        ports: CapturePorts | None = None,
+    ) -> None:
         self._bus = bus
         self._parameters = parameters
         self._loop = EventLoop(bus, stop=stop)
@@ -64,6 +71,7 @@ class IngestService:
         self._running: dict[str, Playback] = {}
         self._running_services: dict[str, set[str]] = {service: set() for service in SAMPLE_READERS}
         self._rejections = RejectionCounter()
+        self._ports = ports if ports is not None else CapturePorts()
         self._survey: tuple[list[SessionHealth], list[Rejection]] = ([], [])
 
     def run(self) -> None:
@@ -87,10 +95,12 @@ class IngestService:
         handles += [
             bus.watch_tokens(service_token_key(site, service, "*"), self._service_seen) for service in SAMPLE_READERS
         ]
+        self._ports.open_configured()
         loop.run()
         self._end_all()
         for handle in handles:
             handle.close()
+        self._ports.close()
         self._threads.shutdown(wait=False, cancel_futures=True)
         loop.close()
         health.close()
@@ -117,12 +127,16 @@ class IngestService:
         order = parse_order(StartOrder, body)
         if order.session in self._descriptions:
             raise InvalidOrder(f"session {order.session} runs already; stop it or choose another id")
-        source = open_chosen(order.source, order.choices, session=order.session)
+        source = open_chosen(order.source, order.choices, session=order.session, ports=self._ports)
         description = source.describe()
         with self._lock:
-            if description.session in self._descriptions:
-                raise InvalidOrder(f"session {description.session} was started by another order just now")
-            self._descriptions[description.session] = description
+            is_taken = description.session in self._descriptions
+            if not is_taken:
+                self._descriptions[description.session] = description
+        if is_taken:
+            if isinstance(source, LiveSource):
+                source.close()
+            raise InvalidOrder(f"session {description.session} was started by another order just now")
         self._loop.post(lambda: self._play(source, description, order))
         return description.model_dump_json().encode()
 
@@ -157,7 +171,7 @@ class IngestService:
             self._running[session].end(time.monotonic())
 
     def _sources(self, _body: bytes) -> bytes:
-        """Recordings at hand: those whose manifest is right and whose data is here."""
+        """Recordings at hand: those whose manifest is right and whose data is here. And the cameras."""
         found = []
         for name, path in known_recordings().items():
             try:
@@ -166,7 +180,10 @@ class IngestService:
             except SourceError:
                 continue
             found.append({"name": name, "title": manifest.title, "duration_s": None})
-        return json.dumps({"recordings": found}).encode()
+        devices = [
+            {"name": each.spec, "title": each.title, "sending": each.is_sending} for each in self._ports.offered()
+        ]
+        return json.dumps({"recordings": found, "devices": devices}).encode()
 
     def _describe(self, key: str, _parameters: dict[str, str], _body: bytes) -> Iterable[Received]:
         site, asked = self._bus.settings.site, key.rpartition("/")[2]
@@ -218,7 +235,8 @@ class IngestService:
 
     def _take_stock(self) -> None:
         """What Health says, gathered on the loop's thread."""
-        self._survey = ([playback.health() for playback in self._running.values()], self._rejections.report())
+        rejections = self._rejections.report() + self._ports.rejections()
+        self._survey = ([playback.health() for playback in self._running.values()], rejections)
 
     def _end_all(self) -> None:
         """Tokens and rings go with the connection, which is closed next."""

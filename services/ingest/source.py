@@ -10,6 +10,8 @@ from schemas.vocabulary import Task
 from services.flow.message import Envelope, Message
 from services.flow.raw_streams import raw_streams
 from services.ingest.batching import Batcher
+from services.ingest.capture.ports import CapturePorts
+from services.ingest.capture.source import open_device
 from services.ingest.choices import AS_THE_SOURCE_SAYS, Choices
 from services.ingest.data import MANIFESTS, data_folders
 from services.ingest.driver import Source, SourceMessage
@@ -48,16 +50,25 @@ def open_source(
     return open_chosen(spec, Choices(estimator, walk_path, known, task, walkway_m), session=session)
 
 
-def open_chosen(spec: str, choices: Choices = AS_THE_SOURCE_SAYS, *, session: str | None = None) -> Source:
+def open_chosen(
+    spec: str,
+    choices: Choices = AS_THE_SOURCE_SAYS,
+    *,
+    session: str | None = None,
+    ports: CapturePorts | None = None,
+) -> Source:
     """Open a recording folder, a manifest, an .mcap file or an archived session's folder, a known recording's name,
-    `synthetic:walk?speed=1.1` or another synthetic motion.
+    `synthetic:walk?speed=1.1` or another synthetic motion, or a device: `device:kinect?port=7788`.
 
-    `session` None takes a random id. Raises SourceError, saying what is wrong where and what to do.
+    A device is a LiveSource: it runs from now on and must be closed. `ports` are those that the process listens on
+    already. `session` None takes a random id. Raises SourceError, saying what is wrong where and what to do.
     """
     identity = Identity.new(session, choices)
     scheme, separator, rest = spec.partition(":")
     if separator and scheme == "synthetic":
         return open_synthetic(rest, identity)
+    if separator and scheme == "device":
+        return open_device(rest, identity, ports)
     named = known_recordings()
     if spec in named:
         return Recording(named[spec], identity)
@@ -71,6 +82,7 @@ def open_chosen(spec: str, choices: Choices = AS_THE_SOURCE_SAYS, *, session: st
         return McapRecording(archived, identity) if archived else Recording(path / FILE_NAME, identity)
     raise UnknownSource(
         f"{spec[:200]!r} is no folder with {FILE_NAME}, no .mcap file, neither synthetic:walk nor synthetic:march, "
+        "no device:kinect?port=7788, "
         f"and no known recording ({', '.join(named)})"
     )
 

@@ -19,7 +19,7 @@ TARGETS = set(re.findall(r"^([a-z-]+):", (ROOT / "Makefile").read_text(), re.MUL
 @pytest.mark.parametrize("path", READMES, ids=lambda path: str(path.relative_to(ROOT)))
 def test_commands_in_readmes_exist(path):
     text = path.read_text()
-    for command in re.findall(r"(?:^|`|\s)ambula ([a-z]+)", text):
+    for command in re.findall(r"(?:^|`|\s)ambula ([a-z][a-z-]*)", text):
         assert command in COMMANDS, f"there is no `ambula {command}`"
     for target in re.findall(r"(?:^|`)make ([a-z-]+)", text, re.MULTILINE):
         assert target in TARGETS or target.startswith("bench-"), f"there is no `make {target}`"

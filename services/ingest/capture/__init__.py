@@ -1,0 +1,1 @@
+"""Live skeletons from a capture PC: datagrams in, one followed person out."""
