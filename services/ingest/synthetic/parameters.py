@@ -5,6 +5,7 @@ from dataclasses import dataclass
 from typing import ClassVar
 
 from services.ingest.synthetic.dials import Dials, dial
+from services.ingest.synthetic.whole_body.parameters import BesideSensorsParameters
 
 
 @dataclass(frozen=True)
@@ -40,7 +41,12 @@ class SessionParameters(Dials):
 
 
 @dataclass(frozen=True)
-class WalkParameters(SessionParameters):
+class BeforeCameraParameters(BesideSensorsParameters, SessionParameters):
+    """A session that a camera may look at: the person stays where it stands, on a treadmill or on the spot."""
+
+
+@dataclass(frozen=True)
+class WalkParameters(BeforeCameraParameters):
     """A walk."""
 
     motion: ClassVar[str] = "walk"
@@ -53,7 +59,7 @@ class WalkParameters(SessionParameters):
 
 
 @dataclass(frozen=True)
-class MarchParameters(SessionParameters):
+class MarchParameters(BeforeCameraParameters):
     """Marching on the spot, as in the trials of Joukov et al. (section IV-B): two minutes at 50 Hz.
 
     Their 70 steps per minute are 1.167 Hz of the right knee, so that a beat is one cycle of a leg.

@@ -4,6 +4,7 @@ import math
 from abc import ABC, abstractmethod
 from collections.abc import Iterable, Iterator
 from functools import cached_property
+from typing import TYPE_CHECKING
 
 import numpy as np
 from scipy.interpolate import PchipInterpolator
@@ -11,10 +12,10 @@ from scipy.optimize import brentq
 
 from schemas.session import Anthropometry, HubDescription, ReferenceChannel, SessionDescription
 from schemas.vocabulary import LOWER_BODY, Side, Task
-from services.ingest.synthetic.block import Block
+from services.ingest.synthetic.block import Block, SkeletonTrack
 from services.ingest.synthetic.gait import Gait, Strides, WalkingBody
 from services.ingest.synthetic.jets import Array, Jet
-from services.ingest.synthetic.parameters import SessionParameters
+from services.ingest.synthetic.parameters import BeforeCameraParameters, SessionParameters
 from services.ingest.synthetic.rigid import PointMotion
 from services.ingest.synthetic.sensors import (
     LEFT_LEG,
@@ -29,7 +30,11 @@ from services.ingest.synthetic.sensors import (
     spoiled,
 )
 from services.ingest.synthetic.timeline import Timeline
+from services.ingest.synthetic.whole_body.parameters import CAMERA_ALONE, NO_CAMERA
 from services.ingest.tracks import ImuTrack, ReferenceTrack
+
+if TYPE_CHECKING:
+    from services.ingest.synthetic.whole_body.walker import SeenWalker
 
 HUB = "walker"
 BLOCK_SAMPLES = 1000
@@ -68,7 +73,9 @@ class SyntheticSession(ABC):
         self.timeline = timeline
         self.gait = gait
         self.reference_hz = parameters.rate
-        self.mounts: list[Mount] = mounts(parameters)
+        self.camera = _camera(parameters)
+        alone = self.camera is not None and self.camera.parameters.camera == CAMERA_ALONE
+        self.mounts: list[Mount] = [] if alone else mounts(parameters)
 
     @abstractmethod
     def amplitude(self, time_s: Array) -> Jet:
@@ -105,18 +112,18 @@ class SyntheticSession(ABC):
         parameters = self.parameters
         return SessionDescription(
             session=session,
-            title=self.title + _WORN_IN_WORDS.get(parameters.worn, "") + _MISWORN_IN_WORDS.get(parameters.misworn, ""),
+            title=self.title + self._worn_and_seen,
             started_unix_ns=started_unix_ns,
             origin="synthetic",
             protocol=self.protocol,
             task=self.task,
             walkway_m=self.walkway_m,
-            estimator="knee_axis" if parameters.worn in (LEFT_LEG, RIGHT_LEG) else "rhythmic_ekf",
-            walk_path="turning",
-            hubs=[HubDescription(name=HUB, sensors=[mount.description for mount in self.mounts])],
-            cameras=[],
+            estimator=self._estimator,
+            walk_path="turning" if self.camera is None else "straight",
+            hubs=self._hubs,
+            cameras=[] if self.camera is None else [self.camera.camera_description()],
             anthropometry=Anthropometry(
-                height_m=None,
+                height_m=None if self.camera is None else self.camera.stature,
                 mass_kg=None,
                 thigh_length_m=parameters.thigh_length,
                 shank_length_m=parameters.shank_length,
@@ -124,14 +131,38 @@ class SyntheticSession(ABC):
                 source="measured",
             ),
             standing=[],
-            reference=reference_channels(self.own_channels) if parameters.truth else [],
+            reference=reference_channels(self.own_channels, self._seen_channels) if parameters.truth else [],
             duration_s=(self.sample_count - 1) / parameters.rate,
             known_rhythms=[],
         )
 
+    @property
+    def _worn_and_seen(self) -> str:
+        if not self.mounts:
+            return ", before a camera alone"
+        worn = _WORN_IN_WORDS.get(self.parameters.worn, "") + _MISWORN_IN_WORDS.get(self.parameters.misworn, "")
+        return worn if self.camera is None else f"{worn}, before a camera"
+
+    @property
+    def _hubs(self) -> list[HubDescription]:
+        sensors = [mount.description for mount in self.mounts]
+        return [HubDescription(name=HUB, sensors=sensors)] if sensors else []
+
+    @property
+    def _estimator(self) -> str:
+        if self.camera is not None:
+            return "fusion" if self.mounts else "body_cekf"
+        return "knee_axis" if self.parameters.worn in (LEFT_LEG, RIGHT_LEG) else "rhythmic_ekf"
+
+    @property
+    def _seen_channels(self) -> tuple[str, ...]:
+        return () if self.camera is None else self.camera.own_channels
+
     def strides(self, time_s: Array) -> Strides:
         """Where the person is at any instants."""
-        return Strides(self.timeline.phase(time_s), self.amplitude(time_s), self.timeline.heading(time_s))
+        posture = {} if self.camera is None else self.camera.posture
+        away = {name: Jet.constant(angle, time_s) for name, angle in posture.items()}
+        return Strides(self.timeline.phase(time_s), self.amplitude(time_s), self.timeline.heading(time_s), away)
 
     def body(self, time_s: Array) -> WalkingBody:
         """The moving body at increasing instants; its path starts at the first of them."""
@@ -149,7 +180,10 @@ class SyntheticSession(ABC):
             strides = self.strides(time_s)
             body = self.gait.body(strides, time_s)
             sensors = [self._track(mount, index, body, strides, captured_ns) for mount in self.mounts]
-            yield Block(sensors, ReferenceTrack(captured_ns, self._truth(body, strides, start, time_s)[:-1]))
+            truth = ReferenceTrack(captured_ns, self._truth(body, strides, start, time_s)[:-1])
+            next_ns = round(time_s[-1] * 1e9) if first + count < self.sample_count else captured_ns[-1] + 1
+            seen = None if self._skeleton is None else self._skeleton.between(int(captured_ns[0]), int(next_ns))
+            yield Block(sensors, truth, seen)
             start = start + body.pelvis.position[-1] * [1, 0, 1]
 
     def _track(
@@ -159,7 +193,13 @@ class SyntheticSession(ABC):
         rng = np.random.default_rng([self.parameters.seed, 3, mount.number, block])
         rate, force = spoiled(mount, truth, self.parameters, rng)
         drifted = (captured_ns / 1e9)[:, None] * mount.gyro_drift
-        return ImuTrack(captured_ns, rate[:-1] + drifted, force[:-1])
+        there = np.ones(len(captured_ns), dtype=bool) if self.camera is None else self.camera.worn_at(captured_ns)
+        return ImuTrack(captured_ns[there], (rate[:-1] + drifted)[there], force[:-1][there])
+
+    @cached_property
+    def _skeleton(self) -> SkeletonTrack | None:
+        duration_s = (self.sample_count - 1) / self.parameters.rate
+        return None if self.camera is None else self.camera.track(self.body, duration_s)
 
     def _truth(self, body: WalkingBody, strides: Strides, start: Array, time_s: Array) -> Array:
         walking = strides.phase.rate
@@ -168,14 +208,24 @@ class SyntheticSession(ABC):
         columns += [body.contact[side] for side in Side]
         columns += [speed, 2 * math.pi * strides.phase.value, 2 * math.pi * walking]
         points: list[PointMotion] = [body.pelvis, *(body.ankle(side) for side in Side)]
-        return np.column_stack([*columns, *(point.position + start for point in points), self.own_truth(time_s)])
+        seen = [] if self.camera is None else [self.camera.truth(body)]
+        return np.column_stack([*columns, *(point.position + start for point in points), self.own_truth(time_s), *seen])
 
 
-def reference_channels(own: Iterable[str] = ()) -> list[ReferenceChannel]:
-    """The truth that travels beside the samples; `own` names what only one motion has."""
+def _camera(parameters: SessionParameters) -> "SeenWalker | None":
+    if not isinstance(parameters, BeforeCameraParameters) or parameters.camera == NO_CAMERA:
+        return None
+    # The body's kinematics bring a compiler along, which an ingest without such a session does without.
+    from services.ingest.synthetic.whole_body.walker import SeenWalker
+
+    return SeenWalker(parameters)
+
+
+def reference_channels(own: Iterable[str] = (), angles: Iterable[str] = ()) -> list[ReferenceChannel]:
+    """The truth that travels beside the samples; `own` names what only one motion has, `angles` what a camera sees."""
     channels = [(dof.name, "rad") for dof in LOWER_BODY]
     channels += [(f"foot_contact_{side}", "1") for side in Side]
     channels += [("walking_speed", "m/s"), ("stride_phase", "rad"), ("stride_frequency", "rad/s")]
     channels += [(f"{point}_{axis}", "m") for point in ("pelvis", "ankle_left", "ankle_right") for axis in "xyz"]
-    channels += [(name, "1") for name in own]
+    channels += [(name, "1") for name in own] + [(name, "rad") for name in angles]
     return [ReferenceChannel(name=name, unit=unit) for name, unit in channels]

@@ -1,5 +1,6 @@
 """The synthetic walk. Pure."""
 
+from services.ingest.errors import InvalidOption
 from services.ingest.synthetic.gait import Gait
 from services.ingest.synthetic.jets import Array, Jet
 from services.ingest.synthetic.parameters import WalkParameters
@@ -15,6 +16,8 @@ class SyntheticWalk(SyntheticSession):
     protocol = "quiet standing, then walking"
 
     def __init__(self, parameters: WalkParameters = COMFORTABLE) -> None:
+        if parameters.camera and parameters.turn_every:
+            raise InvalidOption("turn_every: a camera sees a walker from the front; leave out turns or camera")
         gait = Gait(parameters.thigh_length, parameters.shank_length, parameters.hip_width, parameters.asymmetry)
         super().__init__(parameters, Timeline.plan(parameters), gait)
         self.title = f"Synthetic walk at {parameters.speed:g} m/s (seed {parameters.seed})"

@@ -20,7 +20,7 @@ from services.ingest.synthetic.whole_body.outline import ANKLE_HEIGHT_M, dorsifl
 from services.ingest.synthetic.whole_body.parameters import SidedParameters, TaskParameters
 from services.ingest.synthetic.whole_body.people import Person, person
 from services.ingest.synthetic.whole_body.programme import RATE_HZ, Performance, Programme, perform, slow_noise
-from services.ingest.synthetic.whole_body.view import Key, camera_description, frame_times, viewed
+from services.ingest.synthetic.whole_body.view import Absence, Key, camera_description, frame_times, viewed
 from services.ingest.tracks import ReferenceTrack
 
 Array = NDArray[np.float64]
@@ -101,8 +101,8 @@ class SyntheticTask:
     @cached_property
     def seen(self) -> SkeletonTrack:
         """What the camera delivers."""
-        truth = self.truth
-        return viewed(truth.placed, truth.dorsiflexion, truth.time_s, self.parameters, self.key)
+        truth, absence = self.truth, Absence(self.parameters.away_at, self.parameters.away_for)
+        return viewed(truth.placed, truth.dorsiflexion, truth.time_s, self.parameters, self.key, absence)
 
     def description(self, session: str = "synthetic", started_unix_ns: int = 0) -> SessionDescription:
         """The session as it would be served live. Of the body only the stature is measured."""

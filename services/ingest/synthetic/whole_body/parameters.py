@@ -17,10 +17,23 @@ class CameraParameters(Dials):
     distance: float = dial(2.5, 1.0, 6.0, "m from the camera to the person")
     drops: float = dial(0.02, 0.0, 0.5, "share of frames that never come, at full noise")
     swap_every: float = dial(30.0, 0.0, 3600.0, "s, mean between exchanges of the legs at full noise; 0 never")
-    away_at: float = dial(0.0, 0.0, 8 * 3600.0, "s at which the person leaves the camera's view; 0 never")
-    away_for: float = dial(5.0, 0.1, 600.0, "s out of view")
     passer_at: float = dial(0.0, 0.0, 8 * 3600.0, "s at which somebody passes between camera and person; 0 never")
     passer_for: float = dial(3.0, 0.5, 60.0, "s that the passer is in view")
+
+
+NO_CAMERA, CAMERA_TOO, CAMERA_ALONE = 0, 1, 2
+
+
+@dataclass(frozen=True)
+class BesideSensorsParameters(CameraParameters):
+    """A camera in front of somebody on a treadmill or on the spot, who wears inertial sensors or none."""
+
+    camera: int = dial(0, 0, 2, "0 none, 1 beside the sensors, 2 without them")
+    posture: float = dial(0.0, 0.0, 2.0, "times what people's standing differs from the straight body, drawn by seed")
+    camera_away_at: float = dial(0.0, 0.0, 8 * 3600.0, "s at which the person leaves the camera's view; 0 never")
+    camera_away_for: float = dial(5.0, 0.1, 600.0, "s out of view")
+    imu_away_at: float = dial(0.0, 0.0, 8 * 3600.0, "s at which all inertial sensors fall silent; 0 never")
+    imu_away_for: float = dial(5.0, 0.1, 600.0, "s of silence")
 
 
 @dataclass(frozen=True)
@@ -33,6 +46,8 @@ class TaskParameters(CameraParameters):
     repetitions: int = dial(10, 1, 500, "there and back, of a task of two sides to the right and to the left")
     tempo: float = dial(0.0, 0.0, 60.0, "repetitions per minute, holds and pauses included; 0 is the person's own")
     amplitude: float = dial(0.0, 0.0, 1.3, "times the usual range; 0 is the person's own")
+    away_at: float = dial(0.0, 0.0, 8 * 3600.0, "s at which the person leaves the camera's view; 0 never")
+    away_for: float = dial(5.0, 0.1, 600.0, "s out of view")
     hold: float = dial(0.0, 0.0, 15.0, "s that the far side is held")
     pause: float = dial(0.0, 0.0, 20.0, "s of standing after each repetition, beside the person's own")
     set_of: int = dial(0, 0, 500, "repetitions in a set; 0 makes one set of all")

@@ -26,6 +26,17 @@ PASSER_FROM_M, PASSER_TO_M = 1.5, -1.5
 PASSER_HALF_WIDTH_M = 0.25
 
 
+class Absence(NamedTuple):
+    """When the person is out of view; never if it begins at 0."""
+
+    at_s: float
+    for_s: float
+
+    def within(self, time_s: Array) -> NDArray[np.bool_]:
+        """Which instants are within it."""
+        return (self.at_s > 0.0) & (time_s >= self.at_s) & (time_s < self.at_s + self.for_s)
+
+
 class Key(NamedTuple):
     """What decides everything random of a camera: the same camera errs alike on the same person."""
 
@@ -49,8 +60,13 @@ def frame_times(parameters: CameraParameters, key: Key, duration_s: float) -> Ar
     return np.asarray(np.maximum(numbers * period_s + np.clip(off, -MOST_JITTER * period_s, MOST_JITTER * period_s), 0))
 
 
-def viewed(placed: Placed, dorsiflexion: Array, time_s: Array, parameters: CameraParameters, key: Key) -> SkeletonTrack:
-    """The frames that come. `placed` in the room, dorsiflexion (n, 2) rad, both at time_s (n,)."""
+def viewed(
+    placed: Placed, dorsiflexion: Array, time_s: Array, parameters: CameraParameters, key: Key, absence: Absence
+) -> SkeletonTrack:
+    """The frames that come. `placed` in the room, dorsiflexion (n, 2) rad, both at time_s (n,).
+
+    Who comes back into view is another body to the camera.
+    """
     rng = np.random.default_rng([*key, 5])
     faults = replace(CLINIC, dropped=parameters.drops, swap_every_s=parameters.swap_every).scaled(parameters.noise)
     seen = see(placed, rng, (key.person, key.seed), faults, parameters.frame_rate)
@@ -58,12 +74,12 @@ def viewed(placed: Placed, dorsiflexion: Array, time_s: Array, parameters: Camer
     position, state = _with_others(placed, dorsiflexion, seen, rng, faults.white_std)
     body, people = np.ones(len(time_s), dtype=np.int64), np.ones(len(time_s), dtype=np.int64)
     _pass(parameters, time_s, position, state, people)
-    if parameters.away_at:
-        away = (time_s >= parameters.away_at) & (time_s < parameters.away_at + parameters.away_for)
-        state[away] = NOT_TRACKED
-        body[time_s >= parameters.away_at] = 2
-        people -= away
-        body[away] = 0
+    away = absence.within(time_s)
+    state[away] = NOT_TRACKED
+    people[away] -= 1
+    if away.any():
+        body[time_s >= absence.at_s] = 2
+    body[away] = 0
     position[state == NOT_TRACKED] = np.nan
     captured_ns = np.round(time_s * 1e9).astype(np.int64)
     return SkeletonTrack(captured_ns[came], body[came], people[came], position[came], state[came])
