@@ -6,6 +6,7 @@ import threading
 import time
 from collections.abc import Callable, Iterable
 from concurrent.futures import ThreadPoolExecutor
+from typing import Any
 
 from schemas.health import Progress, Reason, Rejection, SessionHealth
 from schemas.session import SessionDescription
@@ -22,7 +23,7 @@ from services.ingest.capture.ports import CapturePorts
 from services.ingest.data import find_data
 from services.ingest.driver import LiveSource, Source
 from services.ingest.errors import SourceError
-from services.ingest.manifest import load_manifest
+from services.ingest.manifest import Manifest, load_manifest
 from services.ingest.orders import InvalidOrder, MarkOrder, StartOrder, StopOrder, parse_order, refusal
 from services.ingest.parameters import PARAMETERS, IngestParameters
 from services.ingest.playback import Playback
@@ -179,7 +180,7 @@ class IngestService:
                 find_data(manifest.data, path.resolve().parent)
             except SourceError:
                 continue
-            found.append({"name": name, "title": manifest.title, "duration_s": None})
+            found.append({"name": name, "title": manifest.title, "duration_s": None, **_what_is_in(manifest)})
         devices = [
             {"name": each.spec, "title": each.title, "sending": each.is_sending} for each in self._ports.offered()
         ]
@@ -247,3 +248,12 @@ class IngestService:
             self._loop.run_for(
                 self._parameters.farewell_s, lambda: all(each.is_recorded() for each in self._running.values())
             )
+
+
+def _what_is_in(manifest: Manifest) -> dict[str, Any]:
+    """Task and streams of a recording, as its manifest says."""
+    return {
+        "task": manifest.task,
+        "hubs": [hub.name for hub in manifest.hub],
+        "cameras": [camera.name for camera in manifest.camera],
+    }

@@ -1,5 +1,6 @@
 """Persons behind tracking ids: a camera that loses somebody gives a new id, and may exchange two. Pure."""
 
+import math
 from collections.abc import Sequence
 from dataclasses import dataclass, field
 
@@ -18,6 +19,8 @@ BONES = (
     ("spine_shoulder", "shoulder_left"), ("shoulder_left", "elbow_left"), ("elbow_left", "wrist_left"),
     ("hip_right", "knee_right"), ("knee_right", "ankle_right"), ("hip_left", "knee_left"), ("knee_left", "ankle_left"),
 )  # fmt: skip
+SHORTEST_BONE = 0.01
+"""m; shorter is none."""
 LEAST_BONES = 3
 """Bones that two bodies must both have shown before their sizes are compared."""
 VELOCITY_MEMORY_S = 0.3
@@ -46,14 +49,15 @@ class BodyMeasure:
     def place(self, body: SeenBody) -> Array | None:
         """(3,) m, median of the trunk's joints: one of them may be anywhere. None without any."""
         trunk = body.position[self._trunk]
-        known = trunk[np.isfinite(trunk[:, 0])]
-        return np.asarray(np.median(known, axis=0)) if len(known) else None
+        known = np.sort(trunk[np.isfinite(trunk[:, 0])], axis=0)
+        return np.asarray(0.5 * (known[(len(known) - 1) // 2] + known[len(known) // 2])) if len(known) else None
 
     def log_lengths(self, body: SeenBody) -> Array:
         """(bones,) log of m; NaN where an end is not seen."""
-        length = np.linalg.norm(body.position[self._to] - body.position[self._from], axis=1)
-        usable = body.tracked[self._to] & body.tracked[self._from] & (length > 0.01)
-        return np.log(np.where(usable, length, np.nan))
+        bone = body.position[self._to] - body.position[self._from]
+        squared = np.einsum("bi,bi->b", bone, bone)
+        usable = body.tracked[self._to] & body.tracked[self._from] & (squared > SHORTEST_BONE**2)
+        return np.asarray(0.5 * np.log(np.where(usable, squared, np.nan)))
 
 
 @dataclass(eq=False)
@@ -87,7 +91,7 @@ class Person:
         self.log_lengths = np.where(np.isnan(mixed), known, mixed)
         self.place, self.last_ns = place, now_ns
         # Over the floor alone: who squats or bends stays.
-        if float(np.linalg.norm((place - self.home)[[0, 2]])) > parameters.settle_m:
+        if math.hypot(place[0] - self.home[0], place[2] - self.home[2]) > parameters.settle_m:
             self.home, self.settled_ns = place, now_ns
 
     def distance_m(self, place: Array, now_ns: int, coasting_s: float) -> float:
@@ -95,7 +99,7 @@ class Person:
         way = self.velocity * min((now_ns - self.last_ns) * 1e-9, coasting_s)
         squared = float(way @ way)
         share = 0.0 if squared == 0.0 else min(1.0, max(0.0, float((place - self.place) @ way) / squared))
-        return float(np.linalg.norm(place - self.place - share * way))
+        return math.hypot(*(place - self.place - share * way))
 
     def size_difference(self, log_lengths: Array) -> float:
         """Median over bones of |log ratio|; 0 while too few bones are known to tell."""

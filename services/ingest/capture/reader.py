@@ -39,7 +39,7 @@ class FrameReader:
 
     def take(self, frame: CameraFrame, arrival_ns: int) -> list[SourceMessage]:
         """The messages that a frame leads to: none while an earlier one is waited for."""
-        if frame.camera is not self._view.kind:
+        if frame.camera != self._view.kind:
             self._rejections.add(self._name, Reason.UNKNOWN_SENSOR)
             return []
         return self._messages(self._order.add(frame.seq, arrival_ns, (arrival_ns, frame)))
