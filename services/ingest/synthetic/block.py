@@ -1,6 +1,6 @@
 """Pieces of a simulated session, and what every simulated session can do."""
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from typing import NamedTuple, Protocol
 
@@ -8,11 +8,13 @@ import numpy as np
 from numpy.typing import NDArray
 
 from schemas.session import SessionDescription
-from services.ingest.tracks import ImuTrack, ReferenceTrack
+from schemas.vocabulary import SkeletonJoint
+from services.ingest.skeleton import RoomFrames
+from services.ingest.tracks import ImuTrack, ReferenceTrack, SkeletonTrack
 
 
-class SkeletonTrack(NamedTuple):
-    """n frames of one camera."""
+class SeenFrames(NamedTuple):
+    """n frames of one camera, joints in the order of its description."""
 
     captured_ns: NDArray[np.int64]  # (n,) increasing
     body: NDArray[np.int64]  # (n,) number of the body that is followed, 0 for nobody
@@ -20,11 +22,18 @@ class SkeletonTrack(NamedTuple):
     position: NDArray[np.float64]  # (n, joints, 3) m, room; NaN where not tracked
     state: NDArray[np.int64]  # (n, joints) 0 not tracked, 1 inferred, 2 tracked
 
-    def between(self, from_ns: int, to_ns: int) -> "SkeletonTrack":
+    def track(self, joints: Sequence[SkeletonJoint]) -> SkeletonTrack:
+        """As every driver has it."""
+        frames = RoomFrames(tuple(joints), self.position, self.state, 0, 0)
+        return SkeletonTrack(
+            self.captured_ns, [body or None for body in self.body.tolist()], self.people.tolist(), frames
+        )
+
+    def between(self, from_ns: int, to_ns: int) -> "SeenFrames":
         """Frames from the first instant on and before the second."""
         first, last = np.searchsorted(self.captured_ns, [from_ns, to_ns])
         part = slice(int(first), int(last))
-        return SkeletonTrack(
+        return SeenFrames(
             self.captured_ns[part], self.body[part], self.people[part], self.position[part], self.state[part]
         )
 
@@ -35,7 +44,7 @@ class Block:
 
     sensors: list[ImuTrack]
     reference: ReferenceTrack
-    skeleton: SkeletonTrack | None = None
+    skeleton: SeenFrames | None = None
 
 
 class SimulatedSession(Protocol):

@@ -6,13 +6,15 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import NDArray
 
-from schemas.session import SensorDescription, SessionDescription, WalkPath
-from services.ingest.errors import InvalidOption
+from schemas.session import CameraDescription, HubDescription, SensorDescription, SessionDescription, WalkPath
 from services.ingest.manifest import FILE_NAME
-from services.ingest.synthetic.block import Block
+from services.ingest.skeleton import KINECT_V2_JOINTS
+from services.ingest.synthetic.block import Block, SeenFrames
 from services.ingest.synthetic.motions import parse_motion
 
 TRUTH_FILE = "truth.csv"
+_AXES = ("x", "y", "z")
+_FRAME_HEADER = ["time_s", *(f"{joint}_{what}" for joint in KINECT_V2_JOINTS for what in (*_AXES, "state"))]
 _IMU_HEADER = ["time_s", "gyr_x", "gyr_y", "gyr_z", "acc_x", "acc_y", "acc_z"]
 
 
@@ -20,16 +22,18 @@ def write_recording(folder: Path, options: str = "", walk_path: WalkPath = "turn
     """Write the walk of `speed=1.1&seed=3`, or another motion, to a folder, which is made.
 
     `walk_path` is what the recording asks of an estimator; it does not make the walk straight. Raises SourceError for
-    an unknown motion or option, or for one before a camera alone.
+    an unknown motion or option.
     """
     source = parse_motion(motion, options)
-    if not source.description().hubs:
-        raise InvalidOption(f"synthetic:{motion} has no inertial sensors; only their samples are written as files")
     folder.mkdir(parents=True, exist_ok=True)
     blocks = list(source.samples())
     description = source.description().model_copy(update={"walk_path": walk_path})
-    for index, sensor in enumerate(description.hubs[0].sensors):
-        _write(folder / f"imu_{sensor.name}.csv", _IMU_HEADER, [_imu_rows(block, index) for block in blocks])
+    for hub in description.hubs:
+        for index, sensor in enumerate(hub.sensors):
+            _write(folder / f"imu_{sensor.name}.csv", _IMU_HEADER, [_imu_rows(block, index) for block in blocks])
+    for camera in description.cameras:
+        frames = [block.skeleton for block in blocks if block.skeleton is not None]
+        _write(folder / f"{camera.name}.csv", _FRAME_HEADER, [_frame_rows(camera, part) for part in frames])
     if description.reference:
         header = ["time_s", *(channel.name for channel in description.reference)]
         _write(folder / TRUTH_FILE, header, [_truth_rows(block) for block in blocks])
@@ -41,6 +45,14 @@ def _imu_rows(block: Block, sensor: int) -> NDArray[np.float64]:
     return np.column_stack([track.captured_ns * 1e-9, track.angular_velocity, track.specific_force])
 
 
+def _frame_rows(camera: CameraDescription, frames: SeenFrames) -> NDArray[np.float64]:
+    """In the SDK's axes: x to the sensor's left, y up, z where it looks. A joint that is not tracked has no numbers."""
+    order = [camera.joints.index(joint) for joint in KINECT_V2_JOINTS]
+    x, y, z = np.moveaxis(frames.position[:, order], 2, 0)
+    values = np.stack([z, y, -x, frames.state[:, order]], axis=2)
+    return np.column_stack([frames.captured_ns * 1e-9, values.reshape(len(values), -1)])
+
+
 def _truth_rows(block: Block) -> NDArray[np.float64]:
     return np.column_stack([block.reference.captured_ns * 1e-9, block.reference.values])
 
@@ -50,11 +62,12 @@ def _write(path: Path, header: list[str], parts: list[NDArray[np.float64]]) -> N
         writer = csv.writer(file, lineterminator="\n")
         writer.writerow(header)
         for part in parts:
-            writer.writerows([f"{value:.9g}" for value in row] for row in part)
+            writer.writerows(["" if value != value else f"{value:.9g}" for value in row] for row in part)
 
 
 def _manifest(description: SessionDescription, options: str) -> str:
     body = description.anthropometry
+    rate_hz = description.hubs[0].sensors[0].rate_hz if description.hubs else description.cameras[0].rate_hz
     lines = [
         f"# Written by `ambula synth {options}`; the truth beside it is exact.",
         f'title = "{description.title}"',
@@ -62,7 +75,7 @@ def _manifest(description: SessionDescription, options: str) -> str:
         f'task = "{description.task}"',
         *([] if description.walkway_m is None else [f"walkway_m = {description.walkway_m}"]),
         f'walk_path = "{description.walk_path}"',
-        f"rate_hz = {description.hubs[0].sensors[0].rate_hz}",
+        f"rate_hz = {rate_hz}",
         "",
         "[time]",
         'column = "time_s"',
@@ -72,17 +85,13 @@ def _manifest(description: SessionDescription, options: str) -> str:
         f"thigh_length_m = {body.thigh_length_m}",
         f"shank_length_m = {body.shank_length_m}",
         f"hip_width_m = {body.hip_width_m}",
-        "",
-        "[imu]",
-        'file = "imu_{sensor}.csv"',
-        'specific_force = { columns = "acc_{axis}", unit = "m/s^2" }',
-        'angular_velocity = { columns = "gyr_{axis}", unit = "rad/s" }',
-        "",
-        "[[hub]]",
-        f'name = "{description.hubs[0].name}"',
+        *([] if body.height_m is None else [f"height_m = {body.height_m}"]),
+        f'source = "{body.source}"',
     ]
-    for sensor in description.hubs[0].sensors:
-        lines += ["", *_sensor_lines(sensor)]
+    for hub in description.hubs:
+        lines += _hub_lines(hub)
+    for camera in description.cameras:
+        lines += _camera_lines(camera)
     if description.reference:
         lines += ["", "[[reference]]", f'file = "{TRUTH_FILE}"', "channel = ["]
         lines += [
@@ -91,6 +100,36 @@ def _manifest(description: SessionDescription, options: str) -> str:
         ]
         lines.append("]")
     return "\n".join(lines) + "\n"
+
+
+def _hub_lines(hub: HubDescription) -> list[str]:
+    lines = [
+        "",
+        "[imu]",
+        'file = "imu_{sensor}.csv"',
+        'specific_force = { columns = "acc_{axis}", unit = "m/s^2" }',
+        'angular_velocity = { columns = "gyr_{axis}", unit = "rad/s" }',
+        "",
+        "[[hub]]",
+        f'name = "{hub.name}"',
+    ]
+    for sensor in hub.sensors:
+        lines += ["", *_sensor_lines(sensor)]
+    return lines
+
+
+def _camera_lines(camera: CameraDescription) -> list[str]:
+    names = ", ".join(f'"{joint}"' for joint in KINECT_V2_JOINTS)
+    return [
+        "",
+        "[[camera]]",
+        f'name = "{camera.name}"',
+        f'kind = "{camera.kind}"',
+        f'file = "{camera.name}.csv"',
+        f'columns = {{ position = "{{joint}}_{{axis}}", state = "{{joint}}_state", names = [{names}] }}',
+        f"rate_hz = {camera.rate_hz}",
+        f"floor_m = {camera.floor_m}",
+    ]
 
 
 def _sensor_lines(sensor: SensorDescription) -> list[str]:

@@ -12,7 +12,7 @@ from scipy.optimize import brentq
 
 from schemas.session import Anthropometry, HubDescription, ReferenceChannel, SessionDescription
 from schemas.vocabulary import LOWER_BODY, Side, Task
-from services.ingest.synthetic.block import Block, SkeletonTrack
+from services.ingest.synthetic.block import Block, SeenFrames
 from services.ingest.synthetic.gait import Gait, Strides, WalkingBody
 from services.ingest.synthetic.jets import Array, Jet
 from services.ingest.synthetic.parameters import BeforeCameraParameters, SessionParameters
@@ -197,7 +197,7 @@ class SyntheticSession(ABC):
         return ImuTrack(captured_ns[there], (rate[:-1] + drifted)[there], force[:-1][there])
 
     @cached_property
-    def _skeleton(self) -> SkeletonTrack | None:
+    def _skeleton(self) -> SeenFrames | None:
         duration_s = (self.sample_count - 1) / self.parameters.rate
         return None if self.camera is None else self.camera.track(self.body, duration_s)
 

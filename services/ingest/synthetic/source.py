@@ -4,15 +4,14 @@ from collections.abc import Iterator
 from itertools import chain
 
 from schemas.health import Rejection
-from schemas.session import CameraDescription, SessionDescription
+from schemas.session import SessionDescription
 from schemas.signals import IMU, SKELETON
 from services.flow.message import Stream
 from services.ingest.driver import SourceMessage
 from services.ingest.identity import Identity
-from services.ingest.skeleton import RoomFrames, skeleton_batch
-from services.ingest.synthetic.block import Block, SimulatedSession, SkeletonTrack
+from services.ingest.synthetic.block import Block, SimulatedSession
 from services.ingest.synthetic.motions import parse_motion
-from services.ingest.tracks import hub_messages, in_order, reference_messages
+from services.ingest.tracks import hub_messages, in_order, reference_messages, skeleton_messages
 
 
 class SyntheticSource:
@@ -41,20 +40,13 @@ class SyntheticSource:
         tick_ns = round(1e9 / self._session.reference_hz)
         streams = [hub_messages(Stream(IMU, hub.name), block.sensors, tick_ns) for hub in description.hubs]
         if block.skeleton is not None:
-            streams += [_skeleton_messages(camera, block.skeleton) for camera in description.cameras]
+            streams += [
+                skeleton_messages(Stream(SKELETON, camera.name), block.skeleton.track(camera.joints))
+                for camera in description.cameras
+            ]
         if description.reference:
             streams.append(reference_messages(block.reference, tick_ns))
         return in_order(streams)
-
-
-def _skeleton_messages(camera: CameraDescription, track: SkeletonTrack) -> Iterator[SourceMessage]:
-    """One message a frame."""
-    joints = tuple(camera.joints)
-    for k, captured_ns in enumerate(track.captured_ns.tolist()):
-        body = int(track.body[k])
-        frames = RoomFrames(joints, track.position[k : k + 1], track.state[k : k + 1], 0, 0)
-        batch = skeleton_batch([captured_ns], [body or None], [int(track.people[k])], frames)
-        yield SourceMessage(Stream(SKELETON, camera.name), captured_ns, batch)
 
 
 def open_synthetic(what: str, identity: Identity) -> SyntheticSource:

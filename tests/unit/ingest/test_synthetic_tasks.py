@@ -11,6 +11,7 @@ from services.biomech.whole_body.model import CENTRE_NAMES, DOF, WholeBodyModel
 from services.biomech.whole_body.pinocchio_whole_body import PinocchioWholeBody
 from services.ingest.errors import InvalidOption
 from services.ingest.source import iter_messages, open_source
+from services.ingest.synthetic import write_recording
 from services.ingest.synthetic.motions import parse_motion
 from services.ingest.synthetic.whole_body.body import place
 from services.ingest.synthetic.whole_body.camera import CLINIC, INFERRED, NOT_TRACKED, TRACKED, see
@@ -229,3 +230,36 @@ def test_every_dial_has_a_range_and_a_meaning():
         for dial in dataclasses.fields(parse_motion(motion, "").parameters):
             assert dial.metadata["low"] <= dial.default <= dial.metadata["high"]
             assert dial.metadata["meaning"]
+
+
+@pytest.mark.parametrize(
+    ("motion", "options"),
+    [("squat", "repetitions=2&seed=3&away_at=6&away_for=1"), ("walk", "camera=1&duration=10&seed=4")],
+)
+def test_a_written_folder_is_the_same_session(tmp_path, motion, options):
+    write_recording(tmp_path / "made", options, "straight", motion=motion)
+    written, made = open_source(str(tmp_path / "made")), open_source(f"synthetic:{motion}?{options}")
+    a, b = written.describe(), made.describe()
+    assert (a.title, a.task, a.estimator, a.reference) == (b.title, b.task, b.estimator, b.reference)
+    assert [hub.name for hub in a.hubs] == [hub.name for hub in b.hubs]
+    assert a.anthropometry == b.anthropometry
+    assert [(c.name, c.kind, c.rate_hz, c.floor_m) for c in a.cameras] == [
+        (c.name, c.kind, c.rate_hz, c.floor_m) for c in b.cameras
+    ]
+    frames, expected = (
+        {message.envelope.captured_ns: message.payload for message in iter_messages(source)
+         if isinstance(message.payload, SkeletonBatch)}
+        for source in (written, made)
+    )  # fmt: skip
+    zero_ns = min(expected) - min(frames)
+    assert len(frames) == len(expected)
+    order = [a.cameras[0].joints.index(joint) for joint in JOINTS]
+    for at, batch in frames.items():
+        nearest = min(expected, key=lambda other: abs(other - zero_ns - at))
+        assert abs(nearest - zero_ns - at) < 5000
+        same = expected[nearest]
+        assert [batch.state[0][j] for j in order] == same.state[0]
+        for j, position in zip(order, same.position[0], strict=True):
+            assert batch.position[0][j] == (None if position is None else pytest.approx(position, abs=1e-6))
+        assert (batch.body[0] is None) == (same.body[0] is None)
+    assert written.rejections() == []

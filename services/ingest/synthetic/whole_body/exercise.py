@@ -13,7 +13,7 @@ from schemas.session import Anthropometry, ReferenceChannel, SessionDescription
 from schemas.vocabulary import ANKLES, WHOLE_BODY, Task
 from services.biomech.whole_body.model import LENGTH_NAMES, WholeBodyModel
 from services.biomech.whole_body.parameters import lengths_of
-from services.ingest.synthetic.block import Block, SkeletonTrack
+from services.ingest.synthetic.block import Block, SeenFrames
 from services.ingest.synthetic.whole_body.body import Placed, foothold, place
 from services.ingest.synthetic.whole_body.manners import SQUAT, STEPS, TILT_ASIDE, TILT_FORWARD
 from services.ingest.synthetic.whole_body.outline import ANKLE_HEIGHT_M, dorsiflexions
@@ -99,7 +99,7 @@ class SyntheticTask:
         return Truth(time_s, q, placed, dorsiflexions(placed, floor_m), repetition[frames], side[frames])
 
     @cached_property
-    def seen(self) -> SkeletonTrack:
+    def seen(self) -> SeenFrames:
         """What the camera delivers."""
         truth, absence = self.truth, Absence(self.parameters.away_at, self.parameters.away_for)
         return viewed(truth.placed, truth.dorsiflexion, truth.time_s, self.parameters, self.key, absence)

@@ -8,7 +8,7 @@ from numpy.typing import NDArray
 
 from schemas.session import CameraDescription
 from schemas.vocabulary import CameraKind
-from services.ingest.synthetic.block import SkeletonTrack
+from services.ingest.synthetic.block import SeenFrames
 from services.ingest.synthetic.whole_body.body import Placed
 from services.ingest.synthetic.whole_body.camera import CLINIC, INFERRED, NOT_TRACKED, Seen, see
 from services.ingest.synthetic.whole_body.outline import JOINTS, others
@@ -62,7 +62,7 @@ def frame_times(parameters: CameraParameters, key: Key, duration_s: float) -> Ar
 
 def viewed(
     placed: Placed, dorsiflexion: Array, time_s: Array, parameters: CameraParameters, key: Key, absence: Absence
-) -> SkeletonTrack:
+) -> SeenFrames:
     """The frames that come. `placed` in the room, dorsiflexion (n, 2) rad, both at time_s (n,).
 
     Who comes back into view is another body to the camera.
@@ -82,7 +82,7 @@ def viewed(
     body[away] = 0
     position[state == NOT_TRACKED] = np.nan
     captured_ns = np.round(time_s * 1e9).astype(np.int64)
-    return SkeletonTrack(captured_ns[came], body[came], people[came], position[came], state[came])
+    return SeenFrames(captured_ns[came], body[came], people[came], position[came], state[came])
 
 
 def _with_others(

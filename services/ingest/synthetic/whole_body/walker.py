@@ -18,7 +18,7 @@ from schemas.vocabulary import ANKLES, LOWER_BODY, WHOLE_BODY, JointCentre, Segm
 from services.biomech.whole_body.model import CENTRE_NAMES, DOF, LENGTH_NAMES, WholeBodyModel
 from services.biomech.whole_body.parameters import REST_DEG, STATURE_SHARE, lengths_of, unsided
 from services.ingest.errors import InvalidOption
-from services.ingest.synthetic.block import SkeletonTrack
+from services.ingest.synthetic.block import SeenFrames
 from services.ingest.synthetic.gait import WalkingBody
 from services.ingest.synthetic.parameters import BeforeCameraParameters
 from services.ingest.synthetic.whole_body.body import Placed, place
@@ -152,7 +152,7 @@ class SeenWalker:
             carriers[:, m] = body.segments[Segment(f"shank_{side}")].R_world_from_body
         return Placed(centres, carriers), whole.dorsiflexion
 
-    def track(self, body_at: BodyAt, duration_s: float) -> SkeletonTrack:
+    def track(self, body_at: BodyAt, duration_s: float) -> SeenFrames:
         """What the camera delivers of a session."""
         grid_s = np.arange(0.0, duration_s + 1.0 / PATH_HZ, 1.0 / PATH_HZ)
         time_s = frame_times(self.parameters, self.key, duration_s)
