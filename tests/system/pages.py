@@ -13,6 +13,7 @@ from pathlib import Path
 from typing import Any
 
 import pytest
+from selenium.common.exceptions import StaleElementReferenceException
 from selenium.webdriver import Chrome
 from selenium.webdriver.common.by import By
 from selenium.webdriver.support.ui import Select, WebDriverWait
@@ -93,8 +94,9 @@ def free_port() -> int:
 
 
 def wait(page: Chrome, condition: Callable[[], Any], what: str) -> Any:
-    """Poll until the condition holds; its value."""
-    return WebDriverWait(page, PATIENCE_S, poll_frequency=0.2).until(lambda _: condition(), what)
+    """Poll until the condition holds; its value. What was drawn anew while it was looked at is looked at again."""
+    waiting = WebDriverWait(page, PATIENCE_S, poll_frequency=0.2, ignored_exceptions=[StaleElementReferenceException])
+    return waiting.until(lambda _: condition(), what)
 
 
 def text(page: Chrome, selector: str) -> str:
@@ -136,3 +138,27 @@ def colours(page: Chrome, selector: str) -> int:
     """Number of different colours of an element as it is seen."""
     picture = page.find_element(By.CSS_SELECTOR, selector).screenshot_as_base64
     return int(page.execute_async_script(COLOURS, picture))
+
+
+def begin(url: str, source: str, speed: float | None = 1.0) -> str:
+    """A session asked for by REST; its id."""
+    body = json.dumps({"source": source, "speed": speed}).encode()
+    request = urllib.request.Request(f"{url}/v1/sessions", body, {"Content-Type": "application/json"})
+    with urllib.request.urlopen(request, timeout=30) as answer:
+        return str(json.load(answer)["id"])
+
+
+def shown(page: Chrome, selector: str) -> list[str]:
+    """Texts of those elements that can be seen."""
+    return [each.text for each in page.find_elements(By.CSS_SELECTOR, selector) if each.is_displayed()]
+
+
+def seen(page: Chrome, selector: str, count: int, what: str) -> None:
+    """Wait until the text of an element has been that many different ones."""
+    texts = set()
+    wait(page, lambda: texts.add(text(page, selector)) or len(texts) >= count, what)
+
+
+def live(page: Chrome) -> bool:
+    """Whether the session on the page is."""
+    return text(page, ".session-head .chip") == "Live"

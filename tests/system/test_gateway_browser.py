@@ -1,8 +1,6 @@
 """A person at the page: real services, synthetic walks and exercises, a real browser."""
 
-import json
 import time
-import urllib.request
 
 import pytest
 from selenium.webdriver import Chrome
@@ -11,7 +9,7 @@ from selenium.webdriver.support.ui import Select
 
 from services.cli import browser as browsers
 from tests.system import pages
-from tests.system.pages import colours, keep, start, text, wait
+from tests.system.pages import begin, colours, keep, live, seen, shown, start, text, wait
 
 pytestmark = pages.NEEDED
 
@@ -106,14 +104,6 @@ def test_the_page_of_the_api_works_without_the_internet(site, page):
     assert browsers.hosts_asked(page) == {site.url.removeprefix("http://")}
 
 
-def begin(url: str, source: str, speed: float | None = 1.0) -> str:
-    """A session asked for by REST; its id."""
-    body = json.dumps({"source": source, "speed": speed}).encode()
-    request = urllib.request.Request(f"{url}/v1/sessions", body, {"Content-Type": "application/json"})
-    with urllib.request.urlopen(request, timeout=30) as answer:
-        return str(json.load(answer)["id"])
-
-
 def test_the_operator_marks_standing_and_is_told_when_it_was_none(site, page):
     """The walker stands for long, is marked, walks off, and is marked again while it walks."""
     session = begin(site.url, "synthetic:walk?standing=25&duration=120&seed=5")
@@ -136,20 +126,6 @@ def notice(page: Chrome, start: str) -> str:
     """The notice at hand if it starts so; read once, since it goes by itself."""
     told = text(page, ".session-head + .banner")
     return told if told.startswith(start) else ""
-
-
-def shown(page: Chrome, selector: str) -> list[str]:
-    return [each.text for each in page.find_elements(By.CSS_SELECTOR, selector) if each.is_displayed()]
-
-
-def seen(page: Chrome, selector: str, count: int, what: str) -> None:
-    """Wait until the text of an element has been that many different ones."""
-    texts = set()
-    wait(page, lambda: texts.add(text(page, selector)) or len(texts) >= count, what)
-
-
-def live(page: Chrome) -> bool:
-    return text(page, ".session-head .chip") == "Live"
 
 
 def test_one_knee_is_one_leg_with_its_angle_and_a_report_of_its_own(site):

@@ -6,8 +6,7 @@ import { number } from "./units.js";
 import { jointName } from "./words.js";
 
 const SPAN_S = 2;
-const SHOWN_HZ = 25;
-const SLOW_SHARE = 0.7;
+const SLOW_SHARE = 0.3;
 
 /** How many pictures a second came lately, by the times of the data; null before there are some. */
 export class PictureRate {
@@ -75,9 +74,9 @@ export class CameraPanel {
   }
 }
 
-/** What the camera should send, and what comes of it where that is clearly less: the screen is sent 25 a second. */
+/** What the camera should send, and what comes of it where that is clearly less. Not every picture is sent on. */
 function rateText(rate_hz, nominal_hz) {
-  const slow = rate_hz !== null && rate_hz < SLOW_SHARE * Math.min(nominal_hz, SHOWN_HZ);
+  const slow = rate_hz !== null && rate_hz < SLOW_SHARE * nominal_hz;
   return slow ? `${number(rate_hz, 0)} of ${number(nominal_hz, 0)} pictures/s` : `${number(nominal_hz, 0)} pictures/s`;
 }
 

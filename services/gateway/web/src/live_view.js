@@ -143,6 +143,7 @@ export class LiveView {
       this.atS = pose.at_s;
       const figure = this.body && figureOf(pose, this.body);
       if (figure) this.skeleton.show(figure, kneeAngles(pose));
+      else if (this.camera) this.skeleton.clear();
       for (const chart of this.charts) chart.add(pose, pose.trail);
       for (const panel of this.panels) panel.add(pose, pose.trail);
       this.strip.show(pose.at_s);

@@ -1,4 +1,4 @@
-// How far every angle that was seen went within a repetition, both sides beside each other.
+// How far angles went within a repetition, both sides beside each other.
 import { el, fill } from "./dom.js";
 import { degrees, number } from "./units.js";
 import { SIDES } from "./vectors.js";
@@ -18,11 +18,12 @@ function spreadOf(values) {
   return { mean, spread: values.length > 1 ? Math.sqrt(squares / (values.length - 1)) : null };
 }
 
-/** A row per angle; null where no repetition tells more than the movement that was followed. */
-export function rangesTable(repetitions) {
+/** A row per angle, without the joints in `known`; null where no repetition tells of any. */
+export function rangesTable(repetitions, known = []) {
   const means = meanRanges(repetitions);
-  if (means.size === 0) return null;
-  const joints = [...new Set([...means.keys()].map((name) => (sideOf(name) ? jointOf(name) : name)))];
+  const all = new Set([...means.keys()].map((name) => (sideOf(name) ? jointOf(name) : name)));
+  const joints = [...all].filter((joint) => !known.includes(joint));
+  if (joints.length === 0) return null;
   const head = el("tr", {}, el("th", { scope: "col" }, ""));
   head.append(...SIDES.map((side) => el("th", { scope: "col", class: `number ${side}` }, side === "left" ? "Left" : "Right")));
   const rows = joints.toSorted(byRange(means)).map((joint) => row(joint, means));

@@ -93,9 +93,9 @@ export function movementTable(repetitions) {
       {},
       el("th", { scope: "row" }, String(place + 1)),
       sided ? el("td", { class: each.side }, each.side === "left" ? "Left" : "Right") : null,
-      ...[measuresOf(each).range, each.turn_angle].map((angle) => cell(`${number(degrees(angle), 0)}°`)),
+      ...[measuresOf(each).range, each.turn_angle].map((value) => cell(angle(value))),
       ...[each.turn_s - each.start_s, each.hold_s, each.end_s - each.turn_s].map((time_s) => cell(seconds(time_s))),
-      ...knees.map((side) => cell(`${number(degrees(each.ranges[`knee_flexion_${side}`]), 0)}°`)),
+      ...knees.map((side) => cell(angle(each.ranges[`knee_flexion_${side}`]))),
       el("td", { class: "quiet" }, refusal(each)),
     ),
   );
@@ -104,6 +104,7 @@ export function movementTable(repetitions) {
   return table(columns, el("tbody", {}, ...rows));
 }
 
+const angle = (radians) => (radians === undefined ? "–" : `${number(degrees(radians), 0)}°`);
 const seconds = (time_s) => (time_s === null ? "–" : `${number(time_s, 1)} s`);
 const refusal = (each) => (each.valid ? "" : `does not count: ${each.rejected_because ?? "not known"}`);
 
@@ -118,7 +119,7 @@ export function repetitionTable(repetitions) {
       {},
       el("th", { scope: "row" }, String(place + 1)),
       bothSides ? el("td", { class: each.side }, side) : null,
-      ...[range, largest, smallest].map((angle) => cell(`${number(degrees(angle), 0)}°`)),
+      ...[range, largest, smallest].map((value) => cell(angle(value))),
       ...[flexing_s, extending_s].map((time_s) => cell(`${number(time_s, 1)} s`)),
       el("td", { class: "quiet" }, refusal(each)),
     );

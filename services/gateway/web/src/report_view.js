@@ -34,7 +34,6 @@ const BODY_HEADLINES = [
   "repetition_range",
   "repetition_hold",
   "repetition_tempo",
-  "repetition_range_slope",
 ];
 const PARTS = ["metrics", "curves", "phases", "repetitions", "recordings"];
 
@@ -117,7 +116,7 @@ export class ReportView {
     else this.showMetrics(metrics.metrics);
     if (!(phases instanceof Error)) this.showPhases(phases.phases, metrics.metrics);
     if (!(repetitions instanceof Error) && repetitions.repetitions.length > 0)
-      this.showRepetitions(repetitions.repetitions);
+      this.showRepetitions(repetitions.repetitions, metrics.metrics);
     if (!(curves instanceof Error) && this.walks) this.showCurves(curves.curves);
     this.showFiles(files instanceof Error ? [] : files);
   }
@@ -179,22 +178,24 @@ export class ReportView {
     this.charts.push(new PhaseTimeline(host, attempts));
   }
 
-  showRepetitions(repetitions) {
+  showRepetitions(repetitions, metrics) {
     const host = el("div", { class: "drawn" });
     const meaning = el("span", { class: "quiet" }, "least to largest angle of each; hollow ones do not count");
     const head = el("div", { class: "panel-head" }, el("h2", {}, "Repetitions"), meaning);
     const list = this.session.task === "knee_flexion" ? repetitionTable(repetitions) : movementTable(repetitions);
-    this.showRanges(repetitions);
+    this.showRanges(repetitions, metrics);
     this.curves.append(el("section", { class: "panel", "aria-label": "Repetitions" }, head, host, list));
     this.charts.push(new RepetitionChart(host, repetitions));
   }
 
-  showRanges(repetitions) {
-    const list = rangesTable(repetitions);
+  /** Angles that are no metric of the task. */
+  showRanges(repetitions, metrics) {
+    const known = metrics.map(({ name }) => /^repetition_(.+)_range$/.exec(name)?.[1]).filter(Boolean);
+    const list = rangesTable(repetitions, known);
     if (!list) return;
-    const meaning = el("span", { class: "quiet" }, "within a repetition, mean ± standard deviation");
-    const head = el("div", { class: "panel-head" }, el("h2", {}, "Ranges of motion"), meaning);
-    this.exercise.after(el("section", { class: "panel", "aria-label": "Ranges of motion" }, head, list));
+    const meaning = el("span", { class: "quiet" }, "range within a repetition, mean ± standard deviation");
+    const head = el("div", { class: "panel-head" }, el("h2", {}, "Other angles"), meaning);
+    this.exercise.after(el("section", { class: "panel", "aria-label": "Other angles" }, head, list));
   }
 
   showCurves(curves) {

@@ -26,18 +26,19 @@ export class Skeleton2d {
       "aria-label": "Stick figure",
       class: "paper",
     });
+    this.body = svg("g");
     this.seat = this.add("rect", { fill: GHOST, rx: 4 });
-    this.root.append(svg("line", { x1: 30, x2: WIDTH - 30, y1: FLOOR, y2: FLOOR, stroke: GHOST, "stroke-width": 2 }));
+    this.root.append(svg("line", { x1: 30, x2: WIDTH - 30, y1: FLOOR, y2: FLOOR, stroke: GHOST, "stroke-width": 2 }), this.body);
     this.trunk = this.line(GHOST, 10);
     this.legs = Object.fromEntries(SIDES.map((side) => [side, this.leg(side)]));
     this.pelvis = this.line(PELVIS, 12);
-    this.upper = new PaperTrunk(this.root);
+    this.upper = new PaperTrunk(this.body);
     host.append(this.root);
   }
 
   add(tag, attributes) {
     const node = svg(tag, { visibility: "hidden", ...attributes });
-    this.root.append(node);
+    this.body.append(node);
     return node;
   }
 
@@ -74,6 +75,7 @@ export class Skeleton2d {
 
   show(figure, angles = {}) {
     this.last = figure;
+    this.body.removeAttribute("display");
     this.angles = angles;
     const now = performance.now() / 1000;
     this.stage.follow(figure, Math.min(0.1, now - (this.drawn ?? now)));
@@ -137,6 +139,12 @@ export class Skeleton2d {
     const right = (x - fromX) * sin + (z - fromZ) * cos;
     const across = { side: forward, front: -right, back: right, mirror: right }[this.view];
     return [WIDTH / 2 + across * this.scale, FLOOR - (y + 0.05 - this.stage.ground) * this.scale];
+  }
+
+  /** Nobody is there. */
+  clear() {
+    this.last = null;
+    this.body.setAttribute("display", "none");
   }
 
   setStale(stale) {

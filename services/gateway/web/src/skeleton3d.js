@@ -143,6 +143,14 @@ export class Skeleton3d {
     this.wake();
   }
 
+  /** Nobody is there. */
+  clear() {
+    if (!this.newer) return;
+    this.newer = this.older = null;
+    this.body.visible = false;
+    this.wake();
+  }
+
   /** Grey everything: what is seen is not now. */
   setStale(stale) {
     if (this.stale === stale) return;
