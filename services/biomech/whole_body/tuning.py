@@ -1,7 +1,8 @@
-"""Tuning of the filter's noise: from data, from frequency content, against a reference, and from innovations alone.
+"""Tuning of the process noise: from frequency content, against a reference, and by the likelihood of innovations.
 
-The first three are those of Colombel et al. (section 3.4); the last needs no laboratory, which the paper names as what
-its method lacks. Nothing here draws on the person who is scored: callers choose whose recordings tune.
+The first two are those of Colombel et al. (section 3.4). The last needs no laboratory, which the paper names as what
+its method lacks; `hidden_centres.py` does that better. Nothing here draws on the person who is scored: callers choose
+whose recordings tune.
 """
 
 from collections.abc import Callable, Sequence
@@ -13,6 +14,7 @@ from numpy.typing import NDArray
 from scipy.optimize import least_squares
 
 from services.biomech.whole_body.constrained_ekf import OURS, FilterSettings, WholeBodyEkf
+from services.biomech.whole_body.descent import Judge, descend
 from services.biomech.whole_body.kernels.tables import COORDINATES
 from services.biomech.whole_body.parameters import GROUP, GROUPS, ProcessNoise
 from services.biomech.whole_body.start import Start, States
@@ -41,15 +43,6 @@ def replay(recording: Recording, settings: FilterSettings = OURS) -> tuple[Array
         ekf.advance(1.0 / recording.rate_hz if k else 0.0, centres, state)
         angles[k] = ekf.angles
     return angles, ekf
-
-
-def measurement_variance(seen: Array, reference: Array, state: States) -> tuple[Array, Array]:
-    """Mean (3,) m and variance (3,) m^2 per axis of tracked centres (t, 15, 3) against a reference (section 3.4).
-
-    The variance holds constant offsets as well as noise, so a filter with bias states needs less.
-    """
-    error = (seen - reference)[(state == 2) & np.isfinite(seen).all(axis=2)]
-    return error.mean(axis=0), error.var(axis=0)
 
 
 def frequency_tuned(q: Array, rate_hz: float, share: float = 0.99) -> ProcessNoise:
@@ -82,11 +75,13 @@ class Search:
 def tuned_against_reference(
     recordings: Sequence[Recording], settings: FilterSettings, chosen: Sequence[int], search: Search,
     run: Callable[[Sequence[FilterSettings]], list[Array]] | None = None,
+    on_step: Callable[[], None] = lambda: None,
 ) -> FilterSettings:  # fmt: skip
     """The process noise that brings the angles `chosen` (0 to 21) nearest to the reference (eq. 8).
 
     Trust region reflective, as in the paper, over the logarithm of the 11 values: they span five decades. `run` may
-    evaluate several settings at once, in other processes; each result is `residuals` of all recordings.
+    evaluate several settings at once, in other processes; each result is `residuals` of all recordings. `on_step` is
+    called after each derivative.
     """
     evaluate = run or (lambda batch: [residuals(recordings, one, chosen) for one in batch])
     held = settings.process.held
@@ -95,14 +90,19 @@ def tuned_against_reference(
     def with_groups(log_groups: Array) -> FilterSettings:
         return replace(settings, process=ProcessNoise.of_groups(10.0**log_groups, held=held))
 
+    known: dict[bytes, Array] = {}
+
     def misfit(log_groups: Array) -> Array:
-        return evaluate([with_groups(log_groups)])[0]
+        key = log_groups.tobytes()
+        if key not in known:
+            known[key] = evaluate([with_groups(log_groups)])[0]
+        return known[key]
 
     def slope(log_groups: Array) -> Array:
         # A tenth of a decade: finer differences only see where the gate and the bounds switch.
-        steps = [log_groups + 0.1 * row for row in np.eye(len(GROUPS))]
-        first, *others = evaluate([with_groups(point) for point in (log_groups, *steps)])
-        return np.stack([(other - first) / 0.1 for other in others], axis=1)
+        columns = evaluate([with_groups(log_groups + 0.1 * row) for row in np.eye(len(GROUPS))])
+        on_step()
+        return np.stack([(column - misfit(log_groups)) / 0.1 for column in columns], axis=1)
 
     found = least_squares(
         misfit, start, slope, bounds=(np.log10(search.least) - 1e-9, np.log10(search.most) + 1e-9),
@@ -120,7 +120,7 @@ def residuals(recordings: Sequence[Recording], settings: FilterSettings, chosen:
     rows = []
     for recording in recordings:
         if recording.angles is None:
-            raise ValueError("tuning against a reference needs recordings with angles; without, use innovations")
+            raise ValueError("tuning against a reference needs recordings with angles; without, hide centres")
         error = (replay(recording, settings)[0] - recording.angles)[:, list(chosen)]
         rows.append(np.where(np.isfinite(error), error, np.pi).ravel())
     return np.concatenate(rows)
@@ -148,51 +148,12 @@ def surprise(recordings: Sequence[Recording], settings: FilterSettings, skipped_
 
 def tuned_by_innovations(
     recordings: Sequence[Recording], settings: FilterSettings, sweeps: int = 2, factor: float = 4.0,
-    on_step: Callable[[], None] = lambda: None,
+    judge: Judge | None = None, on_step: Callable[[], None] = lambda: None,
 ) -> FilterSettings:  # fmt: skip
     """Camera variance and process noise that make the innovations likeliest, without any reference.
 
     Both must move together: with a measurement variance that is too large and fixed, the likeliest process noise is
-    none, and angles lag. So the camera's variance and the common scale of the process come first, then each group;
-    one value after another goes up or down by `factor` as long as that helps, then by its root.
+    none, and angles lag. Kept to be compared: `hidden_centres` does better.
     """
-    best, least = settings, surprise(recordings, settings)
-    for sweep in range(sweeps):
-        step = factor ** (0.5**sweep)
-        for move in _moves():
-            for direction in (step, 1.0 / step):
-                improved = False
-                for _ in range(3):
-                    tried = move(best, direction)
-                    value = surprise(recordings, tried)
-                    on_step()
-                    if value >= least - 1e-5:
-                        break
-                    best, least, improved = tried, value, True
-                if improved:
-                    break
-    return best
-
-
-Move = Callable[[FilterSettings, float], FilterSettings]
-
-
-def _moves() -> list[Move]:
-    def camera(settings: FilterSettings, factor: float) -> FilterSettings:
-        return replace(settings, camera=replace(settings.camera, variance=settings.camera.variance * factor))
-
-    def along(settings: FilterSettings, factor: float) -> FilterSettings:
-        return replace(settings, camera=replace(settings.camera, along=settings.camera.along * factor))
-
-    def scale(settings: FilterSettings, factor: float) -> FilterSettings:
-        process = settings.process
-        return replace(settings, process=ProcessNoise.of_groups(process.groups() * factor, held=process.held))
-
-    def group(name: str) -> Move:
-        def move(settings: FilterSettings, factor: float) -> FilterSettings:
-            changed = {name: getattr(settings.process, name) * factor}
-            return replace(settings, process=replace(settings.process, **changed))
-
-        return move
-
-    return [camera, along, scale, *(group(name) for name in GROUPS)]
+    value = judge or (lambda batch: [surprise(recordings, one) for one in batch])
+    return descend(value, settings, sweeps, factor, 1e-5, on_step)

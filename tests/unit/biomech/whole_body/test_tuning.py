@@ -5,6 +5,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from services.biomech.whole_body.camera_statistics import measurement_variance
 from services.biomech.whole_body.constrained_ekf import FilterSettings
 from services.biomech.whole_body.model import DOF
 from services.biomech.whole_body.parameters import NO_PRIORS, CameraNoise, ProcessNoise
@@ -12,7 +13,6 @@ from services.biomech.whole_body.tuning import (
     Recording,
     Search,
     frequency_tuned,
-    measurement_variance,
     replay,
     residuals,
     surprise,
@@ -62,7 +62,7 @@ def test_innovations_alone_do_so_too(recording: Recording) -> None:
 
 
 def test_without_a_reference_tuning_says_so(recording: Recording) -> None:
-    with pytest.raises(ValueError, match="innovations"):
+    with pytest.raises(ValueError, match="hide centres"):
         residuals([recording._replace(angles=None)], STIFF, KNEES)
 
 
