@@ -8,7 +8,7 @@ from numpy.typing import NDArray
 
 from schemas.vocabulary import SkeletonJoint
 from services.ingest.errors import WrongAxes, WrongUnits
-from services.ingest.skeleton.room import placed
+from services.ingest.skeleton.room import ABSURD_M, placed
 from services.ingest.skeleton.spine import interpolated
 from services.ingest.skeleton.view import CameraView
 from services.ingest.units import SCALES
@@ -45,7 +45,8 @@ def check_view(
     positions n x joints x 3 and codes n x joints as the camera delivers them.
     """
     metres = placed(view, positions)
-    seen = np.asarray(np.isfinite(metres).all(axis=2))
+    # A comparison with what is no number is false.
+    seen = np.asarray((np.abs(metres) < ABSURD_M).all(axis=2))
     if codes is not None:
         seen &= view.state_numbers(codes) > 0
     metres, state = interpolated(view.joints, np.where(seen[:, :, None], metres, np.nan), seen.astype(np.int64))

@@ -15,6 +15,10 @@ FARTHEST_M = 20.0
 """m from the camera. Depth cameras end at 8; beyond this is damage or another unit."""
 
 
+ABSURD_M = 1e6
+"""m. No unit mistaken for another leads here; larger numbers are damage, and their squares may overflow."""
+
+
 class RoomFrames(NamedTuple):
     """n frames of one person in the room."""
 
@@ -36,7 +40,7 @@ def frames_in_room(view: CameraView, positions: Array, codes: NDArray[np.int64] 
     metres = placed(view, positions)
     said = np.full(metres.shape[:2], 2) if codes is None else view.state_numbers(np.asarray(codes, dtype=np.int64))
     finite = np.asarray(np.isfinite(metres).all(axis=2))
-    distance = np.linalg.norm(np.where(finite[:, :, None], metres, 1.0), axis=2)
+    distance = np.linalg.norm(np.clip(np.nan_to_num(metres), -ABSURD_M, ABSURD_M), axis=2)
     # A skeleton without a body comes as zeros: nobody's joint is inside the lens.
     in_range = (distance > 0.0) & (distance <= FARTHEST_M)
     state = np.where(finite & in_range, said, 0)
