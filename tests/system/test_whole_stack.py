@@ -8,11 +8,12 @@ from pathlib import Path
 import pytest
 
 from schemas.imu import ImuBatch, ReferenceBatch
-from schemas.kinematics import JointState
+from schemas.kinematics import JointCentres, JointState
 from schemas.metrics import SessionMetrics
 from schemas.rhythm import Rhythm
 from schemas.session import SessionDescription
 from schemas.signals import IMU, SIGNALS
+from schemas.skeleton import SkeletonBatch
 from schemas.vocabulary import LOWER_BODY
 from services.archive.reader import open_recording
 from services.bus.connection import Bus
@@ -28,6 +29,7 @@ pytestmark = pytest.mark.system
 WALK = "synthetic:walk?speed=1.2&seed=11&duration=24"
 KNEE = "synthetic:walk?speed=1.2&seed=12&duration=24&worn=1"
 TIMED_UP_AND_GO = "synthetic:tug?seed=4&stroll=4"
+SQUATS = "synthetic:squat?person=2&repetitions=4"
 SERVICES = ["archive", "estimation", "segmentation", "metrics", "ingest"]
 
 
@@ -74,7 +76,7 @@ def stack(tmp_path_factory, free_router):
         yield Stack(supervisor, settings, data)
 
 
-OF_ALL_ROWS = ("model", "valid", "observed")
+OF_ALL_ROWS = ("model", "valid", "observed", "seen", "marks")
 """Fields of a message that hold for each of its samples."""
 
 
@@ -89,7 +91,7 @@ def rows(messages: list[Message]) -> list[tuple]:
                 for s, samples in enumerate(sensors):
                     values = zip(samples.captured_ns, samples.angular_velocity, samples.specific_force, strict=True)
                     said += [(captured_ns, s, gyro, force) for captured_ns, gyro, force in values]
-            case JointState() | Rhythm() | ReferenceBatch():
+            case JointState() | JointCentres() | Rhythm() | ReferenceBatch() | SkeletonBatch():
                 fields = dict(message.payload)
                 columns = [value for name, value in fields.items() if name not in OF_ALL_ROWS]
                 said += [(*row, *(fields.get(name) for name in OF_ALL_ROWS)) for row in zip(*columns, strict=True)]
@@ -120,30 +122,32 @@ def same_as_plain_loop(stack: Stack, description: SessionDescription, spec: str)
         assert rows(archived[name]) == rows(messages), name
 
 
-@pytest.fixture(scope="module")
-def walked(stack) -> SessionDescription:
-    """A walk, as fast as the services follow."""
-    return stack.play(WALK, None)
+@pytest.fixture(scope="module", params=[WALK, SQUATS])
+def played(stack, request) -> tuple[str, SessionDescription]:
+    """A walk with sensors and squats before a camera, as fast as the services follow."""
+    return request.param, stack.play(request.param, None)
 
 
-def test_live_services_give_the_numbers_of_a_plain_loop(stack, walked):
-    same_as_plain_loop(stack, walked, WALK)
+def test_live_services_give_the_numbers_of_a_plain_loop(stack, played):
+    spec, description = played
+    same_as_plain_loop(stack, description, spec)
 
 
 KILLED = [
     *((KNEE, victim) for victim in ("estimation", "segmentation", "metrics", "archive")),
     *((WALK, victim) for victim in ("estimation", "archive")),
     *((TIMED_UP_AND_GO, victim) for victim in ("segmentation", "metrics")),
+    *((SQUATS, victim) for victim in ("estimation", "segmentation")),
 ]
 
 
 @pytest.mark.parametrize(("spec", "victim"), KILLED)
 def test_nothing_is_lost_when_a_service_is_killed(stack, spec, victim):
-    """Two sensors of one leg, five of a walker, and a task with phases, each where it differs."""
+    """Two sensors of one leg, five of a walker, a task with phases, and a camera, each where it differs."""
     same_as_plain_loop(stack, stack.play(spec, 4.0, victim), spec)
 
 
-def test_a_knee_session_gives_its_angle_and_strides_and_a_timed_up_and_go_its_phases():
+def test_a_knee_has_its_angle_and_strides_a_timed_up_and_go_its_phases_and_squats_are_counted():
     """What the sessions above are about is there to be lost."""
     knee, timed = plain_loop(KNEE), plain_loop(TIMED_UP_AND_GO)
     flexion = [dof.name for dof in LOWER_BODY].index("knee_flexion_left")
@@ -151,7 +155,10 @@ def test_a_knee_session_gives_its_angle_and_strides_and_a_timed_up_and_go_its_ph
     assert sum(state.valid[flexion] for state in states) > 0.5 * len(states)
     assert len(knee["stride/segmentation"]) > 10
     assert len({m.payload.phase for m in timed["task_phase/segmentation"] if m.payload}) >= 5
-    for streams in (knee, timed):
+    squats = plain_loop(SQUATS)
+    assert len([m for m in squats["repetition/segmentation"] if m.payload]) >= 4
+    assert sum(any(m.payload.seen) for m in squats["joint_centres/estimation"] if m.payload) > 100
+    for streams in (knee, timed, squats):
         assert [m.payload.final for m in streams["metrics/metrics"] if m.payload][-1]
 
 
@@ -165,10 +172,11 @@ def test_two_patients_at_once_equal_each_alone(stack):
     same_as_plain_loop(stack, descriptions[1], other)
 
 
-def test_an_archive_gives_its_own_results_again(stack, walked):
+def test_an_archive_gives_its_own_results_again(stack, played):
     """Recomputed from the raw file: every derived message, to the byte, under the same numbers."""
-    archived = stack.archived(walked.session)
-    source = open_source(str(stack.data / walked.session))
+    _, description = played
+    archived = stack.archived(description.session)
+    source = open_source(str(stack.data / description.session))
     chain = build_chain(source.describe())
     again: dict[str, list[Message]] = {}
     for message in iter_messages(source):

@@ -10,7 +10,6 @@ const { arrangementOf, isExercise } = await load("arrangement.js");
 const { cameraWord } = await load("camera_words.js");
 const { whyUnseen } = await load("angle_words.js");
 const { angleTitle, metricGroup, metricName, qualityText, stateOf } = await load("words.js");
-const { PictureRate } = await load("camera_panel.js");
 const { BONES } = await load("bones.js");
 const { slotsOf } = await load("repetition_report.js");
 const { meanRanges } = await load("ranges_table.js");
@@ -135,13 +134,6 @@ test("a camera's state has its word", () => {
 test("what is not observable has a reason", () => {
   assert.match(whyUnseen("hip_internal_rotation"), /knee is bent/);
   assert.match(whyUnseen("knee_flexion"), /^The camera has not seen/);
-});
-
-test("pictures are counted by the times of the data", () => {
-  const rate = new PictureRate();
-  assert.equal(rate.value, null);
-  for (let i = 0; i < 100; i++) rate.add([{ at_s: i / 25 }, { at_s: i / 25 }]);
-  assert.ok(Math.abs(rate.value - 25) < 0.5);
 });
 
 test("both sides of an exercise stand beside each other", () => {
