@@ -11,6 +11,7 @@ from schemas.signals import service_token_key
 from services.archive.settings import ArchiveSettings
 from services.bus.connection import Bus, BusUnavailable
 from services.bus.settings import BusSettings
+from services.ingest.capture.settings import CaptureSettings
 from services.ingest.data import find_data_root
 
 LEAST_FREE_BYTES = 5 * 1024**3
@@ -27,7 +28,7 @@ class Finding:
 
 def examine() -> Iterator[Finding]:
     """All findings about this machine and, when one runs, about the stack."""
-    for check in (_python, _disk, _page, _browser, _recordings):
+    for check in (_python, _disk, _page, _browser, _recordings, _cameras):
         yield check()
     yield from _stack()
 
@@ -74,6 +75,18 @@ def _recordings() -> Finding:
     if root is None:
         return Finding("Recordings", None, "none found; set AMBULA_DATA to the folder that holds them")
     return Finding("Recordings", True, str(root))
+
+
+def _cameras() -> Finding:
+    try:
+        settings = CaptureSettings()
+    except ValueError as error:
+        return Finding("Cameras", False, f"AMBULA_SKELETON_HOST, _PORTS or _SENDERS cannot be read: {error}")
+    ports = ", ".join(str(port) for port in settings.skeleton_ports) or "none"
+    says = f"skeletons are heard on {settings.skeleton_host}, port {ports}"
+    if settings.is_open_to_all:
+        return Finding("Cameras", None, f"{says}, from any computer; name those that may in AMBULA_SKELETON_SENDERS")
+    return Finding("Cameras", True, says)
 
 
 def _stack() -> Iterator[Finding]:

@@ -52,8 +52,10 @@ class CapturePorts:
             return self._open[port]
 
     def release(self, port: int) -> None:
-        """One user less; the last one closes it."""
+        """One user less; the last one closes it. Nothing happens once all are closed."""
         with self._lock:
+            if port not in self._open:
+                return
             self._users[port] -= 1
             if self._users[port] == 0:
                 self._open.pop(port).close()

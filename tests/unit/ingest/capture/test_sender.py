@@ -19,7 +19,7 @@ from tests.unit.ingest.capture.two_people import JOINTS
 def recorded(kind):
     """A camera, and five frames of it as messages: two, two, one."""
     frames = decoded_frames(5, kind)
-    view = view_of(kind, up=[0, 1, 0] if kind is CameraKind.KINECT_V2 else [0, -1, 0])
+    view = view_of(kind, up=[0, 1, 0] if kind == CameraKind.KINECT_V2 else [0, -1, 0])
     camera = CameraDescription(name="c", kind=kind, rate_hz=30.0, joints=list(view.room_joints), floor_m=-0.95)
     rooms = [frames_in_room(view, each.bodies[0].positions[None], each.bodies[0].codes[None]) for each in frames]
     batches = [skeleton_batch([k * 33], [4], [1], room) for k, room in enumerate(rooms)]
