@@ -1,6 +1,6 @@
 """A camera of a manifest: how it looks into the room, checked before its file is opened."""
 
-from services.ingest.entries import CameraEntry
+from services.ingest.entries import CameraEntry, FormatEntry
 from services.ingest.errors import InvalidManifest
 from services.ingest.skeleton import CameraView, plane_of_floor, view_of
 from services.ingest.timing import check_time
@@ -19,7 +19,7 @@ def floor_height_m(entry: CameraEntry) -> float | None:
     return entry.floor_m
 
 
-def check_camera(entry: CameraEntry, where: str) -> None:
+def check_camera(entry: CameraEntry, usual_format: FormatEntry, where: str) -> None:
     """Raises a SourceError that says what is wrong with it and what to write."""
     try:
         view = camera_view(entry)
@@ -27,6 +27,11 @@ def check_camera(entry: CameraEntry, where: str) -> None:
         raise type(error)(f"{where}: {error}") from error
     if (entry.numbers is None) == (entry.columns is None):
         raise InvalidManifest(f"{where}: write either numbers (joints in order) or columns (joints by name)")
+    if entry.numbers is not None and (entry.format or usual_format).header:
+        raise InvalidManifest(
+            f"{where}: numbers counts columns, which in a file with a header have names: write columns, or "
+            "format = { header = false, skip_lines = 1 }"
+        )
     if entry.floor_plane is not None and (entry.up is not None or entry.floor_m is not None):
         raise InvalidManifest(f"{where}: floor_plane says where up and the floor are; leave out up and floor_m")
     for joint in view.joints:

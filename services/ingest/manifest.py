@@ -103,7 +103,7 @@ def _check_meaning(manifest: Manifest, where: str) -> None:
     for sensor in sensors:
         _check_sensor(manifest, sensor, f"{where}, sensor {sensor.name}")
     for camera in manifest.camera:
-        check_camera(camera, f"{where}, camera {camera.name}")
+        check_camera(camera, manifest.format, f"{where}, camera {camera.name}")
     if manifest.estimator in KNEE_ESTIMATORS and not whole_legs({Segment(sensor.segment) for sensor in sensors}):
         raise InvalidManifest(
             f"{where}: estimator {manifest.estimator!r} needs a sensor on the thigh and one on the shank of one leg; "

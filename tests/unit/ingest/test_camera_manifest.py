@@ -20,6 +20,7 @@ def scene(tmp_path):
         ("{ each = 4, state = 4 }", "{ each = 3, state = 4 }", InvalidManifest, "count from 1 within one joint"),
         ("{ each = 4, state = 4 }", "{ each = 5, state = 4 }", MissingColumn, "no column '102'"),
         ("numbers = { each = 4, state = 4 }", "", InvalidManifest, "either numbers .* or columns"),
+        ("header = false", "header = true", InvalidManifest, "format = { header = false, skip_lines = 1 }"),
         ("[[camera]]", "[imu]", InvalidManifest, "imu.name"),
         (
             'file = "kinect.csv"',

@@ -1,9 +1,13 @@
 """The file of a depth camera becomes frames of the room, or an error that says where and what to do."""
 
+import math
+
 import pytest
 
 from schemas.health import Reason
+from schemas.imu import ReferenceBatch
 from schemas.skeleton import SkeletonBatch
+from schemas.standing import StandingMark
 from schemas.vocabulary import JointCentre, SkeletonJoint, TrackingState
 from services.ingest.errors import ClockError, EmptyFile, WrongAxes, WrongFieldCount, WrongUnits
 from services.ingest.source import in_batches, iter_messages, open_source
@@ -79,6 +83,38 @@ def test_a_row_of_orientations_and_no_states_is_all_tracked(scene):
     scene.toml = scene.toml.replace("header = false", 'header = false, delimiter = " "')
     batch = frames(scene.opened())[0]
     assert set(batch.state[0]) == {TrackingState.TRACKED}
+
+
+def test_joints_may_begin_later_in_a_row_that_has_a_time(scene):
+    """A counter in ms before the joints, which then lie one column later each."""
+    scene.rows = [[str(40 * k), *row] for k, row in enumerate(scene.rows)]
+    scene.toml = scene.toml.replace(
+        "state = 4 }", 'state = 4, first_column = 2 }\ntime = { column = "1", unit = "ms" }'
+    )
+    batches = frames(scene.opened())
+    assert batches[10].captured_ns == [400_000_000]
+    assert batches[0].position[0][0] == pytest.approx(STANDING[J.SPINE_BASE], abs=1e-4)
+
+
+def test_truth_beside_a_camera_may_be_a_lean(scene):
+    """The upper point is 10 cm to the front and 20 cm to the left of one that is 40 cm below; z is up, mm."""
+    scene.toml += """
+[[reference]]
+file = "truth.csv"
+rate_hz = 60.0
+point = [{ name = "hips", columns = "h{axis}", unit = "mm", axes = ["x", "z", "-y"] }]
+inclination = [{ name = "trunk_lean", lower = "h{axis}", upper = ["cx", "cy", "cz"], axes = ["x", "z", "-y"] }]
+"""
+    folder = scene.write()
+    lines = "hx,hy,hz,cx,cy,cz\n" + "1000,500,700,1100,700,1100\n" * 117 + "1000,500,700,,700,1100\n" * 2
+    (scene.path / "truth.csv").write_text(lines)
+    source = open_source(folder)
+    channels = [(channel.name, channel.unit) for channel in source.describe().reference]
+    assert channels[3:] == [("trunk_lean_forward", "rad"), ("trunk_lean_right", "rad")]
+    batches = [m.payload for m in iter_messages(source) if isinstance(m.payload, ReferenceBatch)]
+    assert batches[0].values[0] == pytest.approx([1.0, 0.7, -0.5, math.atan2(1, 4), -math.atan2(2, 4)])
+    assert batches[-1].values[-1][3] is None
+    assert batches[-1].captured_ns[-1] == pytest.approx(118e9 / 60, abs=1)
 
 
 def test_a_frame_without_anybody_is_a_frame(scene):
@@ -179,6 +215,16 @@ def test_an_empty_file_is_refused(scene):
     scene.rows = []
     with pytest.raises(EmptyFile, match=r"kinect\.csv"):
         scene.opened()
+
+
+def test_joined_frames_keep_their_marks(scene):
+    mark = StandingMark(from_ns=0, to_ns=50_000_000, given_ns=60_000_000)
+    messages = [
+        m._replace(payload=m.payload.model_copy(update={"marks": [mark] if k in (2, 3) else []}))
+        for k, m in enumerate(scene.opened().messages())
+    ]
+    joined = [m.payload.marks for m in in_batches(iter(messages), 5)]
+    assert joined == [[mark, mark]] + [[]] * 11
 
 
 def test_frames_joined_and_split_are_the_same(scene):
