@@ -112,5 +112,6 @@ SYNTHETIC_SOURCES = (
     _before_a_camera("steps", "Stepping on the spot, camera", Task.STEPPING),
     _before_a_camera("tilt_forward", "Leaning forward, camera", Task.TRUNK_TILT_SAGITTAL),
     _before_a_camera("tilt_aside", "Leaning to the sides, camera", Task.TRUNK_TILT_FRONTAL),
+    _walker("camera=1&speed=1.1&seed=5", "Walk, camera and sensors together", "camera_and_sensors"),
 )
 """Simulated people that are always there."""

@@ -166,7 +166,7 @@ def test_with_reduced_motion_the_leg_is_drawn_on_paper_and_the_task_can_be_chose
         pages.choose_source(page, KNEE)
         assert [
             group.get_attribute("label") for group in page.find_elements(By.CSS_SELECTOR, "#estimator optgroup")
-        ] == ["Single knee"]
+        ] == ["Sensors: single knee"]
         assert not page.find_element(By.ID, "walkway").is_displayed()
         Select(page.find_element(By.ID, "task")).select_by_visible_text("Timed up and go")
         walkway = page.find_element(By.ID, "walkway")

@@ -31,8 +31,8 @@ export class Skeleton2d {
     this.root.append(svg("line", { x1: 30, x2: WIDTH - 30, y1: FLOOR, y2: FLOOR, stroke: GHOST, "stroke-width": 2 }), this.body);
     this.trunk = this.line(GHOST, 10);
     this.legs = Object.fromEntries(SIDES.map((side) => [side, this.leg(side)]));
-    this.pelvis = this.line(PELVIS, 12);
     this.upper = new PaperTrunk(this.body);
+    this.pelvis = this.line(PELVIS, 12);
     host.append(this.root);
   }
 
