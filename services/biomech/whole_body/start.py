@@ -5,6 +5,7 @@ start that is not standing has none, and its absolute angles carry the camera's 
 """
 
 from dataclasses import asdict
+from itertools import combinations
 from math import radians
 from typing import NamedTuple
 
@@ -32,6 +33,10 @@ PLACE = {centre: i for i, centre in enumerate(CENTRE_NAMES)}
 
 STILL_STD = 0.03
 """m. Largest robust deviation of a tracked centre, arms apart, in a still second: noise 0.01, wander of a bone."""
+STILL_DRIFT = 0.025
+"""m per axis, RMS over the centres, between thirds of a still second. The slow turning point of a movement is still by
+the measure above; of seconds within this the posture was at most 8 deg from rest, of standing ones 95 % are within it
+(tuning people)."""
 UPRIGHT = radians(25.0)
 """Largest angle of trunk, thigh and shank against the vertical while standing, camera offsets included."""
 ARM, FOREARM = radians(35.0), radians(50.0)
@@ -107,12 +112,22 @@ def not_standing(centres: Array, state: States) -> str:
     if not tracked.any(axis=0).all():
         return "not all of the body was in view"
     spread = np.nanmedian(np.where(tracked[:, :, None], np.abs(centres[:, body] - middle[body]), np.nan), axis=0)
-    if spread.max() > STILL_STD:
+    if spread.max() > STILL_STD or _drift(np.where(tracked[:, :, None], centres[:, body], np.nan)) > STILL_DRIFT:
         return "the person moved"
     for upper, lower, most, words in _hanging():
         if _inclination(middle[PLACE[upper]] - middle[PLACE[lower]]) >= most:
             return words
     return ""
+
+
+def _drift(centres: Array) -> float:
+    """m per axis, RMS, between those two thirds of frames (t, m, 3) that differ most; NaN where not tracked."""
+    thirds = np.array_split(centres, 3)
+    there = np.all([np.isfinite(third).any(axis=0) for third in thirds], axis=0)
+    if not there.any():
+        return 0.0
+    places = [np.nanmedian(np.where(there, third, 0.0), axis=0)[there] for third in thirds]
+    return max(float(np.sqrt(np.mean((a - b) ** 2))) for a, b in combinations(places, 2))
 
 
 def _hanging() -> list[tuple[JointCentre, JointCentre, float, str]]:

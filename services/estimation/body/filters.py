@@ -11,6 +11,7 @@ from services.biomech.whole_body.constrained_ekf import WholeBodyEkf, bounds_of
 from services.biomech.whole_body.kernels.tables import COORDINATES, LENGTHS, SEEN
 from services.biomech.whole_body.model import MODEL
 from services.biomech.whole_body.multibody_kinematics import fit_frame
+from services.biomech.whole_body.observability import likely_deviations
 from services.biomech.whole_body.parameters import StartNoise
 from services.biomech.whole_body.presets import CORRECTED, settings_for
 from services.biomech.whole_body.start import FITTED_ANGLE_STD, Start, stature_told_by
@@ -37,6 +38,10 @@ class BodyFilter(Protocol):
     @property
     def absolute(self) -> bool:
         """Whether angles refer to a posture that was known."""
+
+    @property
+    def holds_lengths(self) -> bool:
+        """Lengths do not change any more."""
 
     def advance(self, dt_s: float, centres: Array, state: States) -> bool:
         """Predict over dt_s and fuse a frame; False when the filter has diverged and must begin anew."""
@@ -72,6 +77,11 @@ class OurFilter:
         """Started from standing."""
         return self._ekf.start.standing
 
+    @property
+    def holds_lengths(self) -> bool:
+        """Learnt for long enough."""
+        return self._ekf.in_view_s >= self._ekf.settings.lengths_learnt_s
+
     def advance(self, dt_s: float, centres: Array, state: States) -> bool:
         """One frame."""
         self._ekf.advance(dt_s, centres, state)
@@ -92,9 +102,11 @@ class OurFilter:
         """The estimate within its limits."""
         ekf = self._ekf
         first = ekf.velocity + COORDINATES + 3
-        accelerations = ekf.estimate[first : first + COORDINATES - 3]
+        accelerations, deviations = ekf.estimate[first : first + COORDINATES - 3], ekf.deviations()
+        if self.absolute:
+            deviations[0] = likely_deviations(deviations[0])
         return Told(
-            ekf.q.copy(), ekf.lengths.copy(), ekf.rates.copy(), accelerations.copy(), ekf.deviations(),
+            ekf.q.copy(), ekf.lengths.copy(), ekf.rates.copy(), accelerations.copy(), deviations,
             np.ones(COORDINATES - 3, dtype=np.bool_),
         )  # fmt: skip
 
@@ -137,6 +149,11 @@ class PublishedFilter:
     @property
     def absolute(self) -> bool:
         """Its start is a fitted frame."""
+        return False
+
+    @property
+    def holds_lengths(self) -> bool:
+        """Never."""
         return False
 
     def advance(self, dt_s: float, centres: Array, state: States) -> bool:

@@ -1,7 +1,5 @@
 """The calibration of a session with a camera, and when it is sent again."""
 
-import numpy as np
-
 from schemas.kinematics import Calibration
 from schemas.session import SessionDescription
 from schemas.vocabulary import EventSource, Side
@@ -10,7 +8,7 @@ from services.biomech.whole_body.observability import LARGEST_DEVIATION
 from services.estimation.body.coordinates import MODEL
 from services.estimation.body.parameters import BodyParameters
 from services.estimation.body.tracker import BodyTracker, Posture
-from services.flow.node import State, pack_array, unpack_array
+from services.flow.node import State
 
 STANDING = "quiet standing, taken for the rest posture of people"
 UNKNOWN = "none: nobody stood still; angles are as the camera shows them, with its offsets"
@@ -23,16 +21,14 @@ class FittedBody:
 
     def __init__(self, description: SessionDescription, unused: dict[str, str], parameters: BodyParameters) -> None:
         self._description, self._unused, self._parameters = description, unused, parameters
-        self._begun = 0
-        self._lengths = np.zeros(len(LENGTH_NAMES))
+        self._said: tuple[int, bool] = (0, False)
 
     def news(self, tracker: BodyTracker, posture: Posture) -> Calibration | None:
-        """The calibration, after a start and when a length has changed."""
-        lengths = posture.told.lengths
-        change = np.abs(lengths - self._lengths) > self._parameters.calibration_change * self._lengths
-        if tracker.begun == self._begun and not change.any():
+        """The calibration, after a start and when its lengths have been learnt."""
+        to_say = (tracker.begun, tracker.holds_lengths)
+        if to_say == self._said:
             return None
-        self._begun, self._lengths = tracker.begun, lengths
+        self._said = to_say
         return Calibration(
             model=MODEL,
             estimator=self._description.estimator,
@@ -43,7 +39,7 @@ class FittedBody:
             events_from=dict.fromkeys(Side, EventSource.CAMERA),
             unused=self._unused,
             misplaced={},
-            lengths=dict(zip(LENGTH_NAMES, lengths.tolist(), strict=True)),
+            lengths=dict(zip(LENGTH_NAMES, posture.told.lengths.tolist(), strict=True)),
             absolute=tracker.absolute,
         )
 
@@ -54,8 +50,9 @@ class FittedBody:
 
     def snapshot(self) -> State:
         """What was said last."""
-        return {"begun": self._begun, "lengths": pack_array(self._lengths)}
+        return {"said": list(self._said)}
 
     def restore(self, state: State) -> None:
         """Inverse of `snapshot`."""
-        self._begun, self._lengths = state["begun"], unpack_array(state["lengths"])
+        begun, holds_lengths = state["said"]
+        self._said = (begun, holds_lengths)

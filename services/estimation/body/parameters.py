@@ -22,4 +22,3 @@ class BodyParameters:
     show_after_s: float = 0.3  # s for which an angle must have been observable before it is shown: no flicker
     unknown_std: float = 0.5  # rad, rad/s of what is not estimated
     population_quality: float = 0.4  # best quality of a calibration without a standing second, as in walking
-    calibration_change: float = 0.02  # share by which a length must have changed for the calibration to be sent again

@@ -60,15 +60,14 @@ class BodyTracker:
         return self._filter is not None and self._filter.absolute
 
     @property
+    def holds_lengths(self) -> bool:
+        """The bones' lengths do not change any more."""
+        return self._filter is not None and self._filter.holds_lengths
+
+    @property
     def can_be_absolute(self) -> bool:
         """A standing second would make them so."""
         return self._kind.waits
-
-    @property
-    def lengths(self) -> Array:
-        """(12,) m, as last told."""
-        assert self._held is not None
-        return self._held.lengths
 
     def take(self, frame: Frame) -> list[Posture]:
         """Take the next frame: nothing while it is waited for a start, then everything since."""
