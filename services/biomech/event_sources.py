@@ -58,14 +58,16 @@ def uses_camera(description: SessionDescription) -> bool:
 def session_event_sources(description: SessionDescription) -> dict[Side, EventSource]:
     """What tells the events of each leg in a session.
 
-    Where a camera is used, it tells them unless the whole leg or its shank wears sensors: a foot or the lower back
-    alone would be told by its own motion, which an estimate that shares the body with a camera does not publish.
+    Where a camera is used, it tells them, of both legs alike, unless each wears sensors on its shank at least: a foot
+    or the lower back alone would be told by its own motion, which an estimate that shares the body with a camera does
+    not publish.
     """
     sources = event_sources(used_segments(description))
     if not uses_camera(description):
         return sources
     by_sensors = (EventSource.FULL_LEG, EventSource.SHANK)
-    return {side: source if source in by_sensors else EventSource.CAMERA for side, source in sources.items()}
+    both = all(source in by_sensors for source in sources.values())
+    return sources if both else dict.fromkeys(Side, EventSource.CAMERA)
 
 
 def session_lone_segments(description: SessionDescription) -> tuple[Segment, ...]:

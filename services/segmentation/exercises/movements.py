@@ -14,50 +14,52 @@ Array = NDArray[np.float64]
 TRUNK_JOINT = 0.55
 """Share of the trunk's length, from the hips up, at which the whole body bends (services/biomech/whole_body)."""
 
+_MOVE = 1e-4
+"""rad; every movement is smooth over it."""
+
 _KNEES = ("knee_flexion_right", "knee_flexion_left")
 _TRUNK = ("pelvis_tilt", "pelvis_obliquity", "trunk_flexion")
 
 
 @dataclass(frozen=True, slots=True)
 class Course:
-    """A movement over a batch, each (n,): rad, rad/s and rad."""
+    """A movement over a batch, each (n,): rad, rad/s and rad; and whether every coordinate of it is valid."""
 
     angle: Array
     rate: Array
     std: Array
+    is_valid: bool
 
 
 @dataclass(frozen=True, slots=True)
 class Movement:
     """A row of MOVEMENTS: the coordinates that it needs, and what it makes of them.
 
-    `angle` takes one array per coordinate and gives their movement, rad.
+    `angle` takes one array per coordinate and gives their movement, rad, for arrays of any shape.
     """
 
     name: str
     needs: tuple[str, ...]
     angle: Callable[..., Array]
 
-    def is_seen(self, batch: Batch) -> bool:
-        """Whether every coordinate that it needs is there and valid."""
-        columns = [INDEX[name] for name in self.needs]
-        return max(columns) < len(batch.valid) and bool(batch.valid[columns].all())
+    def course(self, batch: Batch) -> Course | None:
+        """The movement, its rate and deviation; both to first order, the coordinates taken as independent.
 
-    def course(self, batch: Batch) -> Course:
-        """The movement, its rate and deviation; both to first order, the coordinates taken as independent."""
+        None for a body model that lacks a coordinate.
+        """
         columns = [INDEX[name] for name in self.needs]
+        if max(columns) >= len(batch.valid):
+            return None
         position, velocity, std = (
             table[:, columns].T for table in (batch.position, batch.velocity, batch.position_std)
         )
-        slopes = np.array([self._slope(position, k) for k in range(len(columns))])
+        number = len(columns)
+        # As it is, then with each coordinate moved up, then down, for central differences.
+        moves = np.vstack([np.zeros((1, number)), _MOVE * np.eye(number), -_MOVE * np.eye(number)]).T
+        angles = self.angle(*(position[:, None, :] + moves[:, :, None]))
+        slopes = (angles[1 : number + 1] - angles[number + 1 :]) / (2.0 * _MOVE)
         rate, variance = np.sum(slopes * velocity, axis=0), np.sum((slopes * std) ** 2, axis=0)
-        return Course(self.angle(*position), rate, np.sqrt(variance))
-
-    def _slope(self, position: Array, coordinate: int) -> Array:
-        step = np.zeros((len(position), 1))
-        step[coordinate] = 1e-4
-        slope: Array = (self.angle(*(position + step)) - self.angle(*(position - step))) / 2e-4
-        return slope
+        return Course(angles[0], rate, np.sqrt(variance), bool(batch.valid[columns].all()))
 
 
 def squat_depth(right: Array, left: Array) -> Array:

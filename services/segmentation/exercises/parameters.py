@@ -32,8 +32,12 @@ class ExerciseParameters:
     longest_s: float = 45.0
     """s; a hold of 15 s and as long on each way."""
     longest_gap_s: float = 0.5
-    """s without samples or without a valid angle that a repetition may contain; a camera drops single frames and loses
-    joints for a tenth of a second."""
+    """s without samples that a repetition may contain; a camera drops single frames."""
+    longest_unseen_s: float = 1.2
+    """s for which an angle that is not valid is still followed: a camera guesses an ankle for half a second, and what
+    is estimated meanwhile is not to be shown but good enough to tell down from up."""
+    seen_share: float = 0.5
+    """share of a repetition in which a joint must be seen to have a range."""
     jump: float = 0.5
     """rad by which an angle may differ from where its velocity takes it; a camera makes more of them than a sensor, and
     they pass."""
@@ -64,6 +68,7 @@ class ExerciseParameters:
             longest_hold_s=self.longest_hold_s,
             longest_s=self.longest_s,
             longest_gap_s=self.longest_gap_s,
+            one_way=True,
             jump=self.jump,
         )
         if not leans:

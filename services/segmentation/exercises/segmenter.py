@@ -31,16 +31,18 @@ NOT_BACK = {
 class ExerciseSegmenter:
     """Repetitions as they are completed, in order of time, those to the left first.
 
-    Single samples without a valid angle are passed over, as those that never came.
+    An angle that is not valid for a moment is followed as it is estimated meanwhile.
     """
 
     def __init__(self, task: Task, parameters: ExerciseParameters = DEFAULTS) -> None:
         self._parameters = parameters
         self._body = BodyTrail(task, parameters)
         self._movements = FOLLOWED[task]
+        self._followed = tuple(dict.fromkeys(movement for movement, _ in self._movements))
         self._watches = [self._watch(task, movement, side) for movement, side in self._movements]
         self._upright = Upright(parameters) if task is Task.TRUNK_TILT_FRONTAL else None
         self._last_ns: list[int | None] = [None] * len(self._watches)
+        self._valid_ns: list[int | None] = [None] * len(self._watches)
         self._newest_ns = 0
 
     def _watch(self, task: Task, movement: Movement, side: Side | None) -> MovementWatch:
@@ -55,7 +57,8 @@ class ExerciseSegmenter:
     def take(self, batch: Batch) -> list[Output]:
         """The repetitions that these samples complete."""
         self._body.append(batch)
-        courses = [movement.course(batch) if movement.is_seen(batch) else None for movement, _ in self._movements]
+        of_movement = {movement.name: movement.course(batch) for movement in self._followed}
+        courses = [of_movement[movement.name] for movement, _ in self._movements]
         outputs: list[Output] = []
         for row, captured_ns in enumerate(batch.captured_ns.tolist()):
             self._newest_ns = captured_ns
@@ -71,17 +74,29 @@ class ExerciseSegmenter:
         return [Output(REPETITION, self._newest_ns, found) for watch in self._watches for found in watch.finish()]
 
     def _look(self, k: int, course: Course | None, row: int, captured_ns: int) -> list[Repetition]:
-        last_ns, watch = self._last_ns[k], self._watches[k]
-        late = last_ns is not None and captured_ns - last_ns > self._parameters.longest_gap_s * 1e9
-        found = watch.interrupt(MISSING if course is not None else UNSEEN) if late else []
-        if late:
-            self._last_ns[k] = None
         if course is None:
-            return found
+            return []
+        watch, because = self._watches[k], self._interruption(k, captured_ns)
+        found = [] if because is None else watch.interrupt(because)
+        if because is not None:
+            self._valid_ns[k] = None
+        if course.is_valid:
+            self._valid_ns[k] = captured_ns
         self._last_ns[k] = captured_ns
+        if self._valid_ns[k] is None:
+            return found
         sense = -1.0 if self._is_to_the_left(k) else 1.0
         angle, rate, std = (float(values[row]) for values in (course.angle, course.rate, course.std))
         return found + watch.take(Sample(captured_ns, sense * angle, sense * rate, std, 0.0))
+
+    def _interruption(self, k: int, captured_ns: int) -> str | None:
+        """Why this sample does not go on from the last one."""
+        p, last_ns, valid_ns = self._parameters, self._last_ns[k], self._valid_ns[k]
+        if last_ns is None or valid_ns is None:
+            return None
+        if captured_ns - last_ns > p.longest_gap_s * 1e9:
+            return MISSING
+        return UNSEEN if captured_ns - valid_ns > p.longest_unseen_s * 1e9 else None
 
     def _is_to_the_left(self, k: int) -> bool:
         return self._upright is not None and self._movements[k][1] is Side.LEFT
@@ -90,7 +105,7 @@ class ExerciseSegmenter:
         """Where both leans begin; it stays while either is under way."""
         if self._upright is None:
             return
-        if course is None:
+        if course is None or not course.is_valid:
             self._upright.interrupt()
         elif not any(watch.is_away for watch in self._watches):
             self._upright.take(self._newest_ns, float(course.angle[row]))
@@ -108,6 +123,7 @@ class ExerciseSegmenter:
             "watches": [watch.snapshot() for watch in self._watches],
             "upright": None if self._upright is None else self._upright.snapshot(),
             "last_ns": list(self._last_ns),
+            "valid_ns": list(self._valid_ns),
             "newest_ns": self._newest_ns,
         }
 
@@ -118,4 +134,5 @@ class ExerciseSegmenter:
             watch.restore(kept)
         if self._upright is not None:
             self._upright.restore(state["upright"])
-        self._last_ns, self._newest_ns = list(state["last_ns"]), state["newest_ns"]
+        self._last_ns, self._valid_ns = list(state["last_ns"]), list(state["valid_ns"])
+        self._newest_ns = state["newest_ns"]

@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 
 from schemas.gait import CURVE_POINTS
 from services.flow.node import State, pack_array, unpack_array
-from services.segmentation.batch import DOFS, INDEX, Batch
+from services.segmentation.batch import INDEX, Batch
 
 Array = NDArray[np.float64]
 HEADING = INDEX["pelvis_rotation"]
@@ -19,9 +19,9 @@ HEADING = INDEX["pelvis_rotation"]
 class Instant:
     """The body at one time."""
 
-    position: Array  # (15,) rad
-    position_std: Array  # (15,) rad
-    valid: NDArray[np.bool_]  # (15,)
+    position: Array  # (d,) rad
+    position_std: Array  # (d,) rad
+    valid: NDArray[np.bool_]  # (d,)
     phase: float | None  # rad
 
 
@@ -32,10 +32,10 @@ class Span:
     start_ns: int
     end_ns: int
     captured_ns: NDArray[np.int64] = field(repr=False)
-    position: Array = field(repr=False)  # (n, 15) rad, heading unwrapped
+    position: Array = field(repr=False)  # (n, d) rad, heading unwrapped
     phase: Array = field(repr=False)
-    position_std: Array = field(repr=False)  # (15,) rad, mean
-    valid: NDArray[np.bool_] = field(repr=False)  # (15,) valid all the time
+    position_std: Array = field(repr=False)  # (d,) rad, mean
+    valid: NDArray[np.bool_] = field(repr=False)  # (d,) valid all the time
 
     def curve(self, dof: int) -> Array:
         """(101,) rad at 0, 1, ... 100 % of the span."""
@@ -60,9 +60,9 @@ class History:
     def __init__(self) -> None:
         self._captured_ns: list[int] = []
         self._phase: list[float] = []
-        self._position: list[Array] = []  # (15,) rad each
-        self._position_std: list[Array] = []  # (15,) rad each
-        self._valid: list[NDArray[np.bool_]] = []  # (15,) each
+        self._position: list[Array] = []  # (d,) rad each, d as in a batch
+        self._position_std: list[Array] = []  # (d,) rad each
+        self._valid: list[NDArray[np.bool_]] = []  # (d,) each
 
     def append(self, batch: Batch, row: int) -> None:
         """Add the newest sample: one row of a batch."""
@@ -113,8 +113,8 @@ class History:
         return {
             "captured_ns": list(self._captured_ns),
             "phase": pack_array(np.array(self._phase)),
-            "position": pack_array(np.array(self._position).reshape(-1, DOFS)),
-            "position_std": pack_array(np.array(self._position_std).reshape(-1, DOFS)),
+            "position": pack_array(np.array(self._position)),
+            "position_std": pack_array(np.array(self._position_std)),
             "valid": ["".join("1" if value else "0" for value in valid) for valid in self._valid],
         }
 

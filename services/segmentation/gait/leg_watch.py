@@ -1,13 +1,15 @@
 """Watches both legs, each by what tells its events best: the whole leg, a shank, a foot, or the lower back."""
 
 from collections.abc import Mapping
-from typing import NamedTuple
+from typing import NamedTuple, Protocol
 
+from schemas.kinematics import SegmentMotion
+from schemas.session import Anthropometry
 from schemas.vocabulary import EventSource, Segment, Side
 from services.flow.node import State
 from services.segmentation.batch import INDEX, Batch
 from services.segmentation.gait.back_steps import BackStepDetector
-from services.segmentation.gait.leg_kinematics import SIDES
+from services.segmentation.gait.leg_kinematics import SIDES, leg_motion
 from services.segmentation.gait.lone_motion import LoneMotion
 from services.segmentation.gait.lone_swing import FootSwingDetector, ShankSwingDetector
 from services.segmentation.gait.swing import Contact, SwingDetector
@@ -32,11 +34,39 @@ class LegInstant(NamedTuple):
     activity: float | None  # rad/s, how fast what is seen turns; None without a sample
 
 
-class LegWatch:
-    """The detectors of one session."""
+class Legs(Protocol):
+    """Whatever tells the events of both legs."""
 
-    def __init__(self, sources: Mapping[Side, EventSource], parameters: SegmentationParameters) -> None:
+    def take_motion(self, motion: SegmentMotion | None) -> int:
+        """The motion of lone segments at the samples that come next. Returns how many of its samples are unusable."""
+
+    def begin(self, batch: Batch) -> None:
+        """The samples that are looked at next, one by one."""
+
+    def look(self, captured_ns: int, row: int) -> list[LegInstant]:
+        """Both legs at one sample."""
+
+    def detect(self, captured_ns: int, legs: list[LegInstant]) -> list[tuple[Side, Contact]]:
+        """The events that are recognised now."""
+
+    def interrupt(self, leg: int) -> None:
+        """Samples of a leg are missing: what was going on is given up."""
+
+    def snapshot(self) -> State:
+        """Everything that changes; between messages no batch is at hand."""
+
+    def restore(self, state: State) -> None:
+        """Inverse of `snapshot`."""
+
+
+class LegWatch:
+    """The detectors of a session whose sensors tell the events."""
+
+    def __init__(
+        self, sources: Mapping[Side, EventSource], parameters: SegmentationParameters, body: Anthropometry
+    ) -> None:
         self._parameters = parameters
+        self._body = body
         self._sources = [sources[side] for side in SIDES]
         self._needed = [
             [INDEX[name] for name in ("pelvis_tilt", f"hip_flexion_{side}", f"knee_flexion_{side}")] for side in SIDES
@@ -46,8 +76,21 @@ class LegWatch:
         ]
         self._back = BackStepDetector(parameters) if EventSource.LOWER_BACK in self._sources else None
         self.lone = LoneMotion()
+        self._in_joints: list[bool] = []
+        self._rates: list[list[float]] = []
+        self._forward: list[list[float]] = []
 
-    def in_joints(self, batch: Batch) -> list[bool]:
+    def take_motion(self, motion: SegmentMotion | None) -> int:
+        """The motion of lone segments at the samples that come next. Returns how many of its samples are unusable."""
+        return self.lone.take(motion)
+
+    def begin(self, batch: Batch) -> None:
+        """The samples that are looked at next, one by one."""
+        motion = leg_motion(batch.position, batch.velocity, self._body)
+        self._in_joints = self._seen_in_joints(batch)
+        self._rates, self._forward = motion.shank_rate.tolist(), motion.ankle[0].tolist()
+
+    def _seen_in_joints(self, batch: Batch) -> list[bool]:
         """Which legs the joint coordinates show: the whole leg or, where it never can be, its shank."""
         return [
             bool(batch.valid[needed].all())
@@ -56,12 +99,11 @@ class LegWatch:
             for side, source, needed in zip(SIDES, self._sources, self._needed, strict=True)
         ]
 
-    def look(
-        self, captured_ns: int, in_joints: list[bool], rates: list[float], forward: list[float]
-    ) -> list[LegInstant]:
-        """Both legs at one time; the rates (rad/s) and ankles (m) are those of the joint coordinates."""
+    def look(self, captured_ns: int, row: int) -> list[LegInstant]:
+        """Both legs at one sample."""
+        rates, forward = self._rates[row], self._forward[row]
         return [
-            LegInstant(in_joints[leg], rates[leg], forward[leg], abs(rates[leg]))
+            LegInstant(self._in_joints[leg], rates[leg], forward[leg], abs(rates[leg]))
             if source in OF_THE_MODEL
             else self._look_alone(captured_ns, leg, source)
             for leg, source in enumerate(self._sources)

@@ -11,46 +11,53 @@ from services.biomech.event_sources import session_event_sources
 from services.flow.message import Output
 from services.flow.node import State
 from services.segmentation.batch import Batch
+from services.segmentation.camera_gait.camera_legs import CameraLegs
+from services.segmentation.camera_gait.parameters import CameraGaitParameters
 from services.segmentation.gait.history import History
-from services.segmentation.gait.leg_kinematics import SIDES, leg_motion
-from services.segmentation.gait.leg_watch import LegInstant, LegWatch
-from services.segmentation.gait.strides import GAP, SENSOR_MISSING, Flaw, StrideAssembler
+from services.segmentation.gait.leg_kinematics import SIDES
+from services.segmentation.gait.leg_watch import LegInstant, Legs, LegWatch
+from services.segmentation.gait.strides import GAP, OUT_OF_VIEW, SENSOR_MISSING, Flaw, StrideAssembler
 from services.segmentation.parameters import SegmentationParameters
 
 SECOND_NS = 1_000_000_000
 
 
 class GaitSegmenter:
-    """Events as they are recognised, strides once they are complete."""
+    """Events as they are recognised, strides once they are complete; by sensors or by a camera."""
 
     def __init__(self, description: SessionDescription, parameters: SegmentationParameters) -> None:
         sources = session_event_sources(description)
         if EventSource.LOWER_BACK in sources.values():
             parameters = replace(parameters, history_margin_s=parameters.back_history_margin_s)
-        self._parameters = parameters
-        self._body = description.anthropometry
-        self._history = History()
-        self._strides = StrideAssembler(parameters, self._body, self._history)
-        self._legs = LegWatch(sources, parameters)
+        by_camera = EventSource.CAMERA in sources.values()
+        camera = CameraGaitParameters()
+        self._parameters = parameters = camera.over(parameters) if by_camera else parameters
+        body, self._history = description.anthropometry, History()
+        self._legs: Legs
+        if by_camera:
+            self._legs = legs = CameraLegs(camera)
+            self._strides = StrideAssembler(parameters, body, self._history, legs.placements.step)
+        else:
+            self._legs = LegWatch(sources, parameters, body)
+            self._strides = StrideAssembler(parameters, body, self._history)
+        self._unseen = OUT_OF_VIEW if by_camera else SENSOR_MISSING
         self._seen = [False, False]
         self._last_ns: int | None = None
         self._still_since_ns: int | None = None
 
     def take_motion(self, motion: SegmentMotion | None) -> int:
         """The motion of lone segments at the samples that come next. Returns how many of its samples are unusable."""
-        return self._legs.lone.take(motion)
+        return self._legs.take_motion(motion)
 
     def take(self, batch: Batch) -> list[Output]:
         """Events and strides that these samples lead to."""
-        motion = leg_motion(batch.position, batch.velocity, self._body)
-        in_joints = self._legs.in_joints(batch)
+        self._legs.begin(batch)
         outputs: list[Output] = []
         for i, captured_ns in enumerate(batch.captured_ns.tolist()):
             if self._last_ns is not None and captured_ns // SECOND_NS != self._last_ns // SECOND_NS:
                 self._strides.forget(captured_ns)
             self._history.append(batch, i)
-            rates, forward = motion.shank_rate[i].tolist(), motion.ankle[0, i].tolist()
-            outputs += self._sample(captured_ns, self._legs.look(captured_ns, in_joints, rates, forward))
+            outputs += self._sample(captured_ns, self._legs.look(captured_ns, i))
         return outputs
 
     def finish(self) -> list[Output]:
@@ -84,7 +91,7 @@ class GaitSegmenter:
                 continue
             flaws = self._strides.legs[side].flaws
             if not seen[leg]:
-                self._strides.add_flaw(side, Flaw(captured_ns, None, SENSOR_MISSING))
+                self._strides.add_flaw(side, Flaw(captured_ns, None, self._unseen))
                 self._legs.interrupt(leg)
             elif flaws and flaws[-1].until_ns is None:
                 flaws[-1].until_ns = captured_ns

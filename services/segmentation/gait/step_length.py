@@ -56,12 +56,12 @@ def step_length(
     radius = foot_roll_share * (body.thigh_length_m + body.shank_length_m)
     # Rows: the posture itself, then one per coordinate moved up and down for central differences.
     moves = np.vstack([np.zeros((1, DOFS)), _MOVE * np.eye(DOFS), -_MOVE * np.eye(DOFS)])
-    now, then = contact.position + moves, trailing_contact.position + moves
+    now, then = contact.position[:DOFS] + moves, trailing_contact.position[:DOFS] + moves
     distance, lean_now = _ankles_and_lean(leading, now, mean_heading, body)
     _, lean_then = _ankles_and_lean(leading, then, mean_heading, body)
     for terms, instant in ((distance + radius * lean_now, contact), (-radius * lean_then, trailing_contact)):
         slope = (terms[1 : DOFS + 1] - terms[DOFS + 1 :]) / (2 * _MOVE)
-        variance += float(np.sum((slope * instant.position_std) ** 2))
+        variance += float(np.sum((slope * instant.position_std[:DOFS]) ** 2))
     return StepLength(float(distance[0] + radius * (lean_now[0] - lean_then[0])), variance**0.5)
 
 

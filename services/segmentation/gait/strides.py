@@ -1,19 +1,22 @@
 """Strides out of contacts: pairs them, measures them, and says why one does not count."""
 
+from collections.abc import Callable
 from dataclasses import asdict, dataclass, field
 
 import numpy as np
 
 from schemas.gait import Stride, StrideCurve
 from schemas.session import Anthropometry
-from schemas.vocabulary import LOWER_BODY, GaitEventKind, Side
+from schemas.vocabulary import GaitEventKind, Side
 from services.flow.node import State
+from services.segmentation.batch import COLUMNS
 from services.segmentation.gait.history import HEADING, History, Span
 from services.segmentation.gait.step_length import StepLength, step_length
 from services.segmentation.gait.swing import Contact
 from services.segmentation.parameters import SegmentationParameters
 
 GAP = "samples are missing within the stride"
+OUT_OF_VIEW = "the camera did not see this leg within the stride"
 SENSOR_MISSING = "a sensor of this leg was missing within the stride"
 TOO_SHORT = "shorter than a stride can be"
 NO_OTHER_CONTACT = "the other foot did not come down within the stride"
@@ -50,17 +53,28 @@ class Leg:
         return None
 
 
+StepMeasure = Callable[[Side, int, int, Span], StepLength | None]
+"""The step of a leading foot at its contact, ns, after the other foot's contact, ns, within a stride."""
+
+
 class StrideAssembler:
     """Takes contacts and holes as they become known, hands out strides in order of their end.
 
     A stride waits `release_delay_s`, so that a contact of the other foot that is noticed later but lies within it
-    is not missed.
+    is not missed. Steps are measured by the joint angles at the contacts unless there is another measure.
     """
 
-    def __init__(self, parameters: SegmentationParameters, body: Anthropometry, history: History) -> None:
+    def __init__(
+        self,
+        parameters: SegmentationParameters,
+        body: Anthropometry,
+        history: History,
+        measure_step: StepMeasure | None = None,
+    ) -> None:
         self.parameters = parameters
         self.body = body
         self.history = history
+        self._measure_step = measure_step or self._step_by_angles
         self.legs = {side: Leg() for side in Side}
         self._waiting: list[tuple[int, int, Side]] = []  # end, start, side
 
@@ -146,8 +160,9 @@ class StrideAssembler:
         )
 
     def _step(self, leading: Side, contact_ns: int, trailing_ns: int | None, span: Span) -> StepLength | None:
-        if trailing_ns is None:
-            return None
+        return None if trailing_ns is None else self._measure_step(leading, contact_ns, trailing_ns, span)
+
+    def _step_by_angles(self, leading: Side, contact_ns: int, trailing_ns: int, span: Span) -> StepLength | None:
         now, then = self.history.at(contact_ns), self.history.at(trailing_ns)
         if now is None or then is None:
             return None
@@ -193,10 +208,10 @@ class StrideAssembler:
 def _curves(span: Span) -> dict[str, StrideCurve]:
     # Six decimals, 1e-6 rad, keep the message short.
     return {
-        dof.name: StrideCurve(
+        name: StrideCurve(
             position=[round(float(value), 6) for value in span.curve(i)],
             position_std=round(float(span.position_std[i]), 6),
         )
-        for i, dof in enumerate(LOWER_BODY)
+        for i, name in enumerate(COLUMNS[: len(span.valid)])
         if span.valid[i]
     }

@@ -137,7 +137,8 @@ class ExcursionDetector:
         too_old = point.captured_ns - p.longest_s * 1e9
         state.low = low if low.captured_ns > too_old else point
         state.high = high if high.captured_ns > too_old else point
-        for sign, home in ((1, state.low), (-1, state.high)):
+        ways = ((1, state.low),) if p.one_way else ((1, state.low), (-1, state.high))
+        for sign, home in ways:
             least = against_usual if sign == -state.usual else hysteresis
             if abs(point.angle - home.angle) >= least and (state.rested or sign != -state.usual):
                 state.away = Away(sign, home, point, point)

@@ -27,6 +27,8 @@ class RepetitionParameters:
     """s within that band after which the knee rests. 0.1 repetitions per second of 60 deg cross it in 0.3 s."""
     floor_margin: float = 0.0
     """rad above a movement's floor, where there is one, up to which it is still at home."""
+    one_way: bool = False
+    """whether the angle always becomes larger on the way out, so that no resting side has to be found."""
     return_share: float = 0.5
     """share of the way that must be made back before a new movement outward is another repetition; less is a
     hesitation (proposal)."""

@@ -57,17 +57,17 @@ def test_signs_are_those_of_the_vocabulary():
 def test_depth_is_the_mean_of_both_knees_and_needs_both():
     batch = batch_of(knee_flexion_right=np.array([1.0, 0.4]), knee_flexion_left=np.array([0.5, 0.2]))
     np.testing.assert_allclose(SQUAT_DEPTH.course(batch).angle, [0.75, 0.3])
-    assert SQUAT_DEPTH.is_seen(batch)
+    assert SQUAT_DEPTH.course(batch).is_valid
     batch.valid[INDEX["knee_flexion_left"]] = False
-    assert not SQUAT_DEPTH.is_seen(batch)
+    assert not SQUAT_DEPTH.course(batch).is_valid
 
 
 def test_a_lower_body_has_no_trunk():
     batch = batch_of(pelvis_tilt=np.zeros(1))
     lower = Batch(*(getattr(batch, name) for name in ("captured_ns",)), *[np.zeros((1, 15))] * 2, np.zeros(1),
                   np.zeros((1, 15)), np.ones(15, dtype=bool), frozenset())  # fmt: skip
-    assert not LEAN_FORWARD.is_seen(lower)
-    assert SQUAT_DEPTH.is_seen(lower)
+    assert LEAN_FORWARD.course(lower) is None
+    assert SQUAT_DEPTH.course(lower).is_valid
 
 
 @pytest.mark.parametrize("movement", [SQUAT_DEPTH, LEAN_FORWARD, LEAN_RIGHT, movements.HIP_FLEXION[Side.LEFT]])

@@ -152,10 +152,11 @@ def test_tremor_is_no_repetition():
         assert [one.valid for one in found_in(Task.SQUAT, squat(depth))] == [True]
 
 
-def test_single_samples_without_a_valid_angle_are_passed_over():
+def test_an_angle_that_is_not_valid_for_a_moment_is_followed():
     depth = 1.3 * repeated(bump(2.5), 4)
     valid = np.ones(len(depth), dtype=bool)
     valid[::11] = valid[::13] = False
+    valid[round(6.0 * RATE_HZ) : round(6.8 * RATE_HZ)] = False
     made = found_in(Task.SQUAT, squat(depth), valid=valid)
     assert [one.valid for one in made] == [True] * 4
 
@@ -163,7 +164,7 @@ def test_single_samples_without_a_valid_angle_are_passed_over():
 def test_out_of_view_in_the_middle_of_a_squat_rejects_it_alone():
     depth = 1.3 * repeated(bump(2.5), 4)
     valid = np.ones(len(depth), dtype=bool)
-    valid[round(6.0 * RATE_HZ) : round(6.8 * RATE_HZ)] = False
+    valid[round(5.5 * RATE_HZ) : round(7.0 * RATE_HZ)] = False
     made = found_in(Task.SQUAT, squat(depth), valid=valid)
     assert next(one.rejected_because for one in made if not one.valid) == segmenter.UNSEEN
     assert sum(one.valid for one in made) == 3

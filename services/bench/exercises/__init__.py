@@ -1,0 +1,1 @@
+"""Tasks of the whole body and gait from a camera, against truth."""
