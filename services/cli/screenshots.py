@@ -29,6 +29,8 @@ RECORDED = "neura_s02_walk"
 KNEE = "synthetic:walk?worn=1&speed=1.1&seed=4&duration=300"
 EXERCISE = "synthetic:knee?seed=2&duration=300"
 TIMED = "synthetic:tug?attempts=3&stroll=8&seed=4"
+SQUATS = "synthetic:squat?person=2&repetitions=12"
+BODY = "synthetic:squat?person=2&repetitions=100"
 PATIENCE_S = 120
 
 
@@ -54,15 +56,17 @@ def _take_all(page: Chrome, url: str, settings: BusSettings, folder: Path) -> No
     camera = _Camera(page, url, folder)
     live_now, finished, shown = camera.is_live, camera.is_finished, camera.shown
     with Bus.open(settings, "screenshots") as bus:
-        walk, timed = (live.start_session(bus, spec, None).session for spec in (SHORT, TIMED))
-        now = (LONG[0], KNEE, EXERCISE, *LONG[1:], *_recorded())
-        lower_body, knee, exercise, *_ = [live.start_session(bus, spec, 1.0).session for spec in now]
+        walk, timed, squats = (live.start_session(bus, spec, None).session for spec in (SHORT, TIMED, SQUATS))
+        now = (LONG[0], KNEE, EXERCISE, BODY, *LONG[1:], *_recorded())
+        lower_body, knee, exercise, body, *_ = [live.start_session(bus, spec, 1.0).session for spec in now]
+    camera.take("live_body", f"/#/sessions/{body}", lambda: live_now() and shown(".counter dd", "/min"))
     camera.take("live_knee", f"/#/sessions/{knee}", lambda: live_now() and shown(".knee-label", "°"))
     camera.take("live_exercise", f"/#/sessions/{exercise}", lambda: live_now() and shown(".counter dd", "/min"))
     camera.take("live", f"/#/sessions/{lower_body}", lambda: live_now() and not shown(".numbers td", "–"))
     camera.take("sessions", "/", lambda: shown(".card .chip", "Live"))
     camera.take("report", f"/#/sessions/{walk}", finished)
     camera.take("report_timed", f"/#/sessions/{timed}", lambda: finished() and shown("th", "Walk back"))
+    camera.take("report_body", f"/#/sessions/{squats}", lambda: finished() and shown("th", "Knee flexion range"))
     camera.take("system", "/#/system", lambda: shown("tbody", "imu/"))
     camera.take("api", "/docs", lambda: shown("#api", "/v1/sessions"))
 

@@ -17,6 +17,7 @@ DEMO_SOURCES = (
     "synthetic:walk?speed=0.7&asymmetry=0.25&seed=2&duration=900",
     "synthetic:knee?exercise=1&seed=2&duration=900",
     "synthetic:tug?worn=1&seed=4&attempts=20",
+    "synthetic:squat?person=2&repetitions=240",
     "neura_s02_walk",
 )
 
