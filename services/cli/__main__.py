@@ -29,7 +29,8 @@ Source = Annotated[
         metavar="PATH",
         help="A folder with a recording.toml, an .mcap file of Ambula, the name of a shipped manifest"
         " (neura_s02_walk), synthetic:walk?speed=1.1&seed=3, synthetic:march?metronome=70&seed=3,"
-        " synthetic:tug?seed=3 or synthetic:knee?exercise=1&seed=3; or a Kinect: device:kinect?port=7788",
+        " synthetic:tug?seed=3, synthetic:knee?exercise=1&seed=3 or synthetic:squat?seed=3;"
+        " or a Kinect: device:kinect?port=7788",
     ),
 ]
 Estimator = Annotated[
@@ -185,16 +186,19 @@ def synth(
     march: Annotated[str | None, typer.Option(help="march on the spot instead, e.g. metronome=70&seed=7")] = None,
     tug: Annotated[str | None, typer.Option(help="a timed up and go instead, e.g. walkway=3&seed=7")] = None,
     knee: Annotated[str | None, typer.Option(help="an exercise of a knee instead, e.g. exercise=1&seed=7")] = None,
+    motion: Annotated[str | None, typer.Option(help="any other, as in a source, e.g. squat?hold=1&seed=7")] = None,
     straight: Straight = None,
 ) -> None:
-    """Write a synthetic walk, march, timed up and go or knee exercise with its truth as a recording folder."""
+    """Write what a synthetic person does, walking unless said otherwise, with its truth as a recording folder."""
     from services.ingest.errors import SourceError
     from services.ingest.synthetic import write_recording
 
     with told(SourceError, OSError):
         asked = {"march": march, "tug": tug, "knee": knee}
-        motion, options = next(((name, said) for name, said in asked.items() if said is not None), ("walk", walk))
-        write_recording(folder, options, _walk_path(straight) or "turning", motion=motion)
+        name, options = next(((name, said) for name, said in asked.items() if said is not None), ("walk", walk))
+        if motion is not None:
+            name, _, options = motion.partition("?")
+        write_recording(folder, options, _walk_path(straight) or "turning", motion=name)
     out.print(f"written: {folder}/recording.toml and its CSV files; try: ambula run {folder} --out out")
 
 
