@@ -65,7 +65,7 @@ def view_of(
         raise WrongAxes(f"a camera of the kind {kind} is not known; give its joints in order, and its axes")
     delivered = tuple(joints) if joints is not None else vendor.joints if vendor else ()
     R_level = rotation_from_axes(axes or (list(vendor.axes) if vendor else None), f"camera {kind}")
-    pitch = vendor.pitch if vendor and axes is None else 0.0
+    pitch = vendor.pitch if vendor else 0.0
     direction = R_level.T @ [math.sin(pitch), math.cos(pitch), 0.0] if up is None else np.asarray(up, dtype=np.float64)
     return CameraView(
         kind,

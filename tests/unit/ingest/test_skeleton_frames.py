@@ -86,6 +86,15 @@ def test_a_tilted_camera_is_levelled_by_its_floor():
         assert column(frames, joint) == pytest.approx(in_room(joint)), joint
 
 
+def test_a_program_that_turns_the_axes_does_not_turn_the_camera():
+    """Written with y up and z to the camera, m, what an Azure Kinect sees still comes from a lens that looks down."""
+    as_seen = np.array([[seen_by_azure(in_room(joint)) for joint in AZURE_KINECT_JOINTS]])
+    rewritten = as_seen * [1.0, -1.0, -1.0] / 1000
+    usual = frames_in_room(view_of(AZURE), as_seen)
+    other = frames_in_room(view_of(AZURE, axes=["z", "y", "-x"], unit="m"), rewritten)
+    assert other.position == pytest.approx(usual.position)
+
+
 def test_spine_centres_of_an_azure_kinect_lie_on_its_spine():
     assert {J.SPINE_MID, J.SPINE_SHOULDER}.isdisjoint(AZURE_KINECT_JOINTS)
     bent = dict(STANDING) | {J.SPINE_CHEST: (-2.4, 0.38, 0.0)}
