@@ -1,14 +1,15 @@
 """The node of a session, by what measures and by the estimator that was chosen."""
 
 from schemas.session import SessionDescription
-from schemas.vocabulary import CAMERA_ESTIMATORS, FUSION_ESTIMATORS, KNEE_ESTIMATORS
+from schemas.vocabulary import CAMERA_ESTIMATORS, FUSION_ESTIMATORS, KNEE_ESTIMATORS, LOWER_BODY_ESTIMATORS
 from services.estimation.body.node import BodyNode
+from services.estimation.fusion.node import FusionNode
 from services.estimation.knee.node import KneeNode
 from services.estimation.lower_body.node import LowerBodyNode
 from services.estimation.refusal import RefusingNode
 from services.flow.node import Node
 
-NO_FUSION = "sensors and camera in one estimate are not built yet: choose an estimator of one of them"
+NEEDS_BOTH = "fusion needs worn sensors and a camera, and this session has only one of them: choose {choice}"
 ONLY_A_CAMERA = "{estimator} needs worn sensors, and this session has only a camera: choose {choice}"
 
 
@@ -29,7 +30,10 @@ def _chosen(description: SessionDescription) -> Node:
     """Raises ValueError where the estimator cannot work with what measures, with a reason."""
     estimator = description.estimator
     if estimator in FUSION_ESTIMATORS:
-        raise ValueError(NO_FUSION)
+        if description.cameras and description.hubs:
+            return FusionNode(description)
+        others = CAMERA_ESTIMATORS if description.cameras else LOWER_BODY_ESTIMATORS
+        raise ValueError(NEEDS_BOTH.format(choice=" or ".join(others)))
     if estimator in CAMERA_ESTIMATORS:
         return BodyNode(description)
     if description.cameras and not description.hubs:

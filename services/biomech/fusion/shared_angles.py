@@ -1,9 +1,12 @@
 """The angles of pelvis, hips and knees that inertial sensors and a camera both tell.
 
 While both are there, each teaches the other: offsets of both, of which only the difference is seen and each takes its
-share by how large it is known to be; and the camera's manner in this person's movement, q = c0 + c1 z + c2 dz/dt of
-what it tells (z): an offset, a scale and a delay. When the inertial sensors are gone, the camera goes on through
-that; when the camera is gone, the inertial sensors go on with their offset. All angles are independent of each other.
+share by how large it is known to be; and the camera's manner in this person's movement. When the inertial sensors are
+gone, the camera goes on through that; when the camera is gone, the inertial sensors go on with their offset.
+
+The manner is q = c0 + c1 z + c2 dz/dt of what the camera tells (z): an offset, a scale and a delay. While the rhythm
+is locked there is a second one with the harmonics of its phase beside z: what the camera makes of a stride is the same
+in every stride, and so is most of the stride itself. The likelier one is used. All angles are independent.
 """
 
 from typing import NamedTuple
@@ -11,14 +14,13 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from services.biomech.fusion.manner import Manner, wrapped
 from services.biomech.fusion.parameters import SHARED, FusionParameters
 
 Array = NDArray[np.float64]
 Flags = NDArray[np.bool_]
 
 N = len(SHARED)
-START_RESIDUAL = 1.5
-"""Of the camera's noise: what its manner leaves before it is known."""
 
 
 class Told(NamedTuple):
@@ -30,6 +32,13 @@ class Told(NamedTuple):
     valid: Flags  # (11,)
 
 
+class Turn(NamedTuple):
+    """Where in the stride that is; None is used where no rhythm is locked."""
+
+    phase: float  # rad
+    rate: float  # rad/s
+
+
 class SharedAngles:
     """Feed `compare` with instants at which both speak; ask `from_inertial` or `from_camera` for the estimate."""
 
@@ -39,26 +48,30 @@ class SharedAngles:
         """(11, 2) rad: of the inertial sensors, of the camera."""
         self._offset_P = np.zeros((N, 2, 2))
         self._offset_P[:, 0, 0], self._offset_P[:, 1, 1] = p.inertial_offset**2, p.camera_offset**2
-        self.manner = np.tile([0.0, 1.0, 0.0], (N, 1))
-        """(11, 3): rad, 1, s."""
-        self._manner_P = self._manner_start()
-        self._residual = (START_RESIDUAL * p.camera_noise) ** 2
+        plain = np.stack([p.camera_offset, np.full(N, p.scale_std), np.full(N, p.delay_std)], axis=1)
+        orders = np.repeat(np.arange(1.0, p.harmonics + 1.0), 2)
+        stride = np.outer(p.stride_noise * p.camera_noise, 1.0 / orders)
+        self.manner = self._manner(plain)
+        self.rhythmic_manner = self._manner(np.concatenate([plain, stride], axis=1))
 
-    def _manner_start(self) -> Array:
-        p = self._p
-        spread = np.stack([p.camera_offset, np.full(N, p.scale_std), np.full(N, p.delay_std)], axis=1)
-        return np.asarray(spread[:, :, None] ** 2 * np.eye(3))
+    def _manner(self, spread: Array) -> Manner:
+        mean = np.zeros_like(spread)
+        mean[:, 1] = 1.0
+        return Manner(mean, spread, self._p.camera_noise, self._p.manner_memory_s, self._p.residual_memory_s)
 
-    def compare(self, dt_s: float, inertial: Told, camera: Told) -> None:
+    def compare(self, dt_s: float, inertial: Told, camera: Told, turn: Turn | None = None) -> None:
         """Learn from both at the same instant, dt_s after the last comparison."""
         p, both = self._p, inertial.valid & camera.valid
         dt_s = min(max(dt_s, 1e-3), p.camera_noise_s)
         variance = p.camera_noise**2 * p.camera_noise_s / dt_s
+        within_stride = p.camera_noise**2 * p.manner_noise_s / dt_s
         self._forget_offsets(dt_s)
-        difference = camera.position - inertial.position
-        self._learn_offsets(np.where(both, _wrapped(difference), 0.0), variance, both)
-        self._manner_P += self._manner_start() * (2.0 * dt_s / p.manner_memory_s) ** 2
-        self._learn_manner(dt_s, inertial.position - self.offset[:, 0], camera, variance, both)
+        difference = np.where(both, wrapped(camera.position - inertial.position), 0.0)
+        self._learn_offsets(difference, variance, both)
+        q = inertial.position - self.offset[:, 0]
+        self.manner.learn(dt_s, _terms(camera), q, within_stride, both)
+        if turn is not None:
+            self.rhythmic_manner.learn(dt_s, self._stride_terms(camera, turn), q, within_stride, both)
 
     def _forget_offsets(self, dt_s: float) -> None:
         p = self._p
@@ -75,16 +88,6 @@ class SharedAngles:
         self.offset += gain * (difference - self.offset @ h)[:, None]
         self._offset_P -= gain[:, :, None] * Ph[:, None, :]
 
-    def _learn_manner(self, dt_s: float, q: Array, camera: Told, variance: Array, both: Flags) -> None:
-        terms = _terms(camera)
-        Ph = np.einsum("nij,nj->ni", self._manner_P, terms)
-        gain = np.where(both, 1.0, 0.0)[:, None] * Ph / (np.einsum("ni,ni->n", Ph, terms) + variance)[:, None]
-        missed = np.where(both, _wrapped(q - np.einsum("ni,ni->n", self.manner, terms)), 0.0)
-        self.manner += gain * missed[:, None]
-        self._manner_P -= gain[:, :, None] * Ph[:, None, :]
-        share = np.where(both, min(1.0, dt_s / self._p.residual_memory_s), 0.0)
-        self._residual += share * (missed**2 - self._residual)
-
     def from_inertial(self, inertial: Told) -> Told:
         """What the inertial sensors say, without their offset."""
         own = np.maximum(inertial.std**2 - self._p.inertial_offset**2, 0.0)
@@ -92,32 +95,51 @@ class SharedAngles:
         # Before anything was compared the offset's own spread says no more than the estimator itself.
         return inertial._replace(position=inertial.position - self.offset[:, 0], std=np.minimum(std, inertial.std))
 
-    def from_camera(self, camera: Told) -> Told:
-        """What the camera says, without its manner."""
+    def from_camera(self, camera: Told, turn: Turn | None = None) -> Told:
+        """What the camera says, through its manner."""
         terms = _terms(camera)
-        position = np.einsum("ni,ni->n", self.manner, terms)
-        known = np.einsum("ni,nij,nj->n", terms, self._manner_P, terms)
-        return Told(position, self.manner[:, 1] * camera.velocity, np.sqrt(known + self._residual), camera.valid)
+        position, variance = self.manner.value(terms), self.manner.variance(terms)
+        velocity = self.manner.coefficients[:, 1] * camera.velocity
+        if turn is not None:
+            terms = self._stride_terms(camera, turn)
+            likelier = self.rhythmic_manner.variance(terms) < variance
+            position = np.where(likelier, self.rhythmic_manner.value(terms), position)
+            velocity = np.where(likelier, self._stride_velocity(camera, turn), velocity)
+            variance = np.minimum(variance, self.rhythmic_manner.variance(terms))
+        return Told(position, velocity, np.sqrt(variance), camera.valid)
 
-    def snapshot(self) -> dict[str, Array]:
+    def _harmonics(self, turn: Turn) -> tuple[Array, Array]:
+        """Cosines and sines of the phase, (2 harmonics,), and their derivatives by time."""
+        orders = np.arange(1, self._p.harmonics + 1)
+        cosines, sines = np.cos(orders * turn.phase), np.sin(orders * turn.phase)
+        values = np.stack([cosines, sines], axis=1).ravel()
+        rates = np.stack([-orders * turn.rate * sines, orders * turn.rate * cosines], axis=1).ravel()
+        return values, rates
+
+    def _stride_terms(self, camera: Told, turn: Turn) -> Array:
+        values, _ = self._harmonics(turn)
+        return np.concatenate([_terms(camera), np.broadcast_to(values, (N, len(values)))], axis=1)
+
+    def _stride_velocity(self, camera: Told, turn: Turn) -> Array:
+        _, rates = self._harmonics(turn)
+        coefficients = self.rhythmic_manner.coefficients
+        return np.asarray(coefficients[:, 1] * camera.velocity + coefficients[:, 3:] @ rates)
+
+    def snapshot(self) -> dict[str, dict[str, Array]]:
         """Everything that changes."""
         return {
-            "offset": self.offset, "offset_P": self._offset_P, "manner": self.manner, "manner_P": self._manner_P,
-            "residual": self._residual,
-        }  # fmt: skip
+            "offset": {"mean": self.offset, "P": self._offset_P},
+            "manner": self.manner.snapshot(),
+            "rhythmic_manner": self.rhythmic_manner.snapshot(),
+        }
 
-    def restore(self, state: dict[str, Array]) -> None:
+    def restore(self, state: dict[str, dict[str, Array]]) -> None:
         """Inverse of `snapshot`."""
-        self.offset, self._offset_P = state["offset"], state["offset_P"]
-        self.manner, self._manner_P = state["manner"], state["manner_P"]
-        self._residual = state["residual"]
+        self.offset, self._offset_P = state["offset"]["mean"], state["offset"]["P"]
+        self.manner.restore(state["manner"])
+        self.rhythmic_manner.restore(state["rhythmic_manner"])
 
 
 def _terms(camera: Told) -> Array:
     """(11, 3)."""
     return np.stack([np.ones(N), camera.position, camera.velocity], axis=1)
-
-
-def _wrapped(angle: Array) -> Array:
-    """The same angles in (-pi, pi]: a heading may be whole turns apart."""
-    return np.asarray(np.remainder(angle + np.pi, 2.0 * np.pi) - np.pi)

@@ -92,7 +92,7 @@ def test_a_heading_that_is_whole_turns_away_is_the_same_heading():
         inertial = walk.inertial(k)
         plain.compare(DT_S, inertial, walk.camera(k))
         turned.compare(DT_S, inertial._replace(position=inertial.position + whole), walk.camera(k))
-    apart = turned.manner[HEADING] - plain.manner[HEADING]
+    apart = turned.manner.coefficients[HEADING] - plain.manner.coefficients[HEADING]
     assert np.remainder(apart[0] + np.pi, 2 * np.pi) == pytest.approx(np.pi, abs=1e-6)
     np.testing.assert_allclose(turned.offset, plain.offset, atol=1e-9)
 
@@ -104,7 +104,7 @@ def test_what_one_does_not_see_teaches_nothing():
     for k in range(300):
         shared.compare(DT_S, walk.inertial(k), walk.camera(k)._replace(valid=valid))
     assert shared.offset[KNEE] == pytest.approx([0.0, 0.0])
-    assert shared.manner[KNEE] == pytest.approx([0.0, 1.0, 0.0])
+    assert shared.manner.coefficients[KNEE] == pytest.approx([0.0, 1.0, 0.0])
     assert not shared.from_camera(walk.camera(0)._replace(valid=valid)).valid[KNEE]
 
 
@@ -113,9 +113,9 @@ def test_covariances_stay_positive_and_deviations_bounded():
     for k in range(1200):
         shared.compare(DT_S, walk.inertial(k), walk.camera(k))
     state = shared.snapshot()
-    for name in ("offset_P", "manner_P"):
-        assert (np.linalg.eigvalsh(state[name]) > 0.0).all()
-        np.testing.assert_allclose(state[name], np.swapaxes(state[name], 1, 2), atol=1e-12)
+    for part in state.values():
+        assert (np.linalg.eigvalsh(part["P"]) > 0.0).all()
+        np.testing.assert_allclose(part["P"], np.swapaxes(part["P"], 1, 2), atol=1e-12)
     assert (shared.from_camera(walk.camera(0)).std < 0.5).all()
 
 
@@ -126,7 +126,7 @@ def test_it_goes_on_from_a_snapshot_to_the_last_bit():
     for k in range(100):
         first.compare(DT_S, walk.inertial(k), walk.camera(k))
     second = SharedAngles()
-    second.restore({name: array.copy() for name, array in first.snapshot().items()})
+    second.restore({part: {n: a.copy() for n, a in arrays.items()} for part, arrays in first.snapshot().items()})
     for k in range(100, 200):
         second.compare(DT_S, walk.inertial(k), walk.camera(k))
     assert (second.from_camera(walk.camera(7)).position == whole.from_camera(walk.camera(7)).position).all()

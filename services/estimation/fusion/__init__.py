@@ -1,0 +1,1 @@
+"""Inertial sensors and a depth camera in one estimate."""
