@@ -39,7 +39,7 @@ const WHOLE_BODY = {
   walk: {
     charts: [hips, knees, deep(aside, [-20, 20])],
     angles: ["hip_flexion", "knee_flexion", "hip_adduction", "arm_elevation", "elbow_flexion"],
-    middle: ["trunk_lean_forward", "trunk_lean_right", "pelvis_tilt"],
+    middle: ["trunk_lean_forward", "trunk_lean_right"],
     compared: null,
   },
 };

@@ -128,7 +128,8 @@ export class ReportView {
 
   showMetrics(metrics) {
     const groups = Object.groupBy(metrics, (metric) => metricGroup(metric) ?? "rest");
-    this.quality.textContent = qualityText(metrics, this.session);
+    const { task, datum, absolute } = this.session;
+    this.quality.textContent = qualityText(metrics, { task, datum: absolute === false ? null : datum });
     this.strides.hidden = !this.walks;
     if (this.walks) this.showStrides(groups);
     else this.showExercise(groups.exercise ?? [], groups.symmetry);
