@@ -5,7 +5,7 @@ from pathlib import Path
 
 from rich.progress import Progress
 
-from services.bench.kinect import cost_section, recorded_section, simulated_section
+from services.bench.kinect import cost_section, recorded_section, simulated_section, walking_section
 from services.bench.scoreboard import Row, Scoreboard
 from services.ingest.errors import MissingFile
 
@@ -27,11 +27,12 @@ SECTIONS: dict[str, tuple[Section, int, str]] = {
     "ours": (simulated_section.our_rows, 1, ""),
     "kimore": (_quietly(recorded_section.kimore_rows), 1, recorded_section.NOTE),
     "keraal": (_quietly(recorded_section.keraal_rows), 1, ""),
+    "walking": (walking_section.walking_rows, walking_section.STEPS, walking_section.NOTE),
     "cost": (_quietly(cost_section.cost_rows), 1, cost_section.NOTE),
 }
 """Section -> what it measures, how many methods it runs, what is to be said about it."""
 
-WHOLE = ("clinic", "paper", "kimore", "keraal", "cost")
+WHOLE = ("clinic", "paper", "kimore", "keraal", "walking", "cost")
 """What runs without a word; `ours` is the part of `clinic` that takes half a minute."""
 
 

@@ -42,15 +42,16 @@ class Trial(NamedTuple):
 
 
 @cache
-def _recorded_squats() -> dict[str, Array]:
-    lines = (find_data("opencap_joint_angles") / "squats1_videoAndMocap.mot").read_text().splitlines()
+def opencap(recording: str) -> dict[str, Array]:
+    """Columns of `squats1` or `walking1`, deg at 100 Hz. Raises MissingFile."""
+    lines = (find_data("opencap_joint_angles") / f"{recording}_videoAndMocap.mot").read_text().splitlines()
     header = lines.index("endheader")
     names = lines[header + 1].split("\t")
     values = np.loadtxt(lines[header + 2 :])
     return dict(zip(names, values.T, strict=True))
 
 
-SQUAT_COLUMNS = {
+OPENSIM_COLUMNS = {
     "pelvis_tilt": ("pelvis_tilt", -1.0), "pelvis_obliquity": ("pelvis_list", -1.0),
     "pelvis_rotation": ("pelvis_rotation", 1.0), "hip_flexion_right": ("hip_flexion_r", 1.0),
     "hip_adduction_right": ("hip_adduction_r", 1.0), "hip_internal_rotation_right": ("hip_rotation_r", 1.0),
@@ -66,8 +67,8 @@ def recorded_squat(rng: np.random.Generator, progress: Progress) -> dict[str, Ar
     frames, which = len(progress.whole), rng.integers(0, 5)
     part = slice(SQUAT_EDGES[which], SQUAT_EDGES[which + 1])
     found = {}
-    for name, (column, sign) in SQUAT_COLUMNS.items():
-        values = _resampled(_recorded_squats()[column][part], frames)
+    for name, (column, sign) in OPENSIM_COLUMNS.items():
+        values = _resampled(opencap("squats1")[column][part], frames)
         found[name] = sign * (values - np.linspace(values[0], values[-1], frames))
     return found
 
@@ -84,13 +85,19 @@ def trial(who: Person, task: int) -> Trial:
     """A person's trial, always the same. Raises MissingFile without the recorded squats."""
     rng = np.random.default_rng([who.number, task, 7])
     angles, repetition, _ = perform(who, task, rng, manners=RECORDED)
+    return placed_trial(who, task, (angles, repetition), rng, lowest=task == STEPS)
+
+
+def placed_trial(who: Person, task: int, done: tuple[Array, Array], rng: np.random.Generator, *, lowest: bool) -> Trial:
+    """Angles (n, 22) rad on the person's body, with the repetition (n,) of each instant; `lowest` as in foothold."""
+    angles, repetition = done
     n = len(angles)
     bends = np.radians(DRIFT_DEG * slow_noise(rng, n, 2, 0.3))
     body = PinocchioWholeBody(WholeBodyModel(who.trunk_joint), who.lengths, supple=True)
     q = np.concatenate([np.zeros((n, 3)), angles], axis=1)
     frames = [body.supple_frames(*pair) for pair in zip(q, bends, strict=True)]
     centres, carriers = np.array([f[0] for f in frames]), np.array([f[1] for f in frames])
-    base = -foothold(centres, lowest=task == STEPS) + np.array([0.0, HEIGHT, 0.0])
+    base = -foothold(centres, lowest=lowest) + np.array([0.0, HEIGHT, 0.0])
     sway = slow_noise(rng, n, 2) * 0.006
     base[:, 0] += sway[:, 0]
     base[:, 2] += sway[:, 1]

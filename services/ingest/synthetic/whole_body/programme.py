@@ -136,14 +136,23 @@ def _asymmetric(angles: Array, progress: Progress, task: int, asymmetry: float) 
 
 
 def _drifting(who: Person, rng: np.random.Generator, away_deg: Array) -> Array:
-    """rad: about the person's own standing posture, smoothed, with slow drift of 0.8 to 2 deg."""
+    """rad: about the person's own standing posture, smoothed, with natural drift."""
     angles = uniform_filter1d(who.rest_deg + away_deg, 5, axis=0, mode="nearest")
+    return np.radians(hinged(angles + natural_drift_deg(rng, len(angles))))
+
+
+def natural_drift_deg(rng: np.random.Generator, frames: int) -> Array:
+    """(frames, 22) slow drift of 0.8 to 2 deg."""
     sway = np.array([0.8 if name.startswith(("pelvis", "hip", "clavicle")) else 1.2 for name in DOF])
     sway[[i for i, name in enumerate(DOF) if "shoulder_internal" in name]] = 2.0
-    angles += slow_noise(rng, len(angles), len(DOF)) * sway
+    return np.asarray(slow_noise(rng, frames, len(DOF)) * sway)
+
+
+def hinged(angles_deg: Array) -> Array:
+    """The same with knees and elbows that do not overextend."""
     hinges = [i for i, name in enumerate(DOF) if name.startswith(("knee", "elbow"))]
-    angles[:, hinges] = np.maximum(angles[:, hinges], HINGE_LEAST_DEG)
-    return np.asarray(np.radians(angles))
+    angles_deg[:, hinges] = np.maximum(angles_deg[:, hinges], HINGE_LEAST_DEG)
+    return angles_deg
 
 
 def slow_noise(rng: np.random.Generator, frames: int, columns: int, cutoff_hz: float = 0.4) -> Array:
