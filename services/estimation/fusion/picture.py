@@ -10,6 +10,7 @@ from services.biomech.whole_body.kernels.tables import COORDINATES
 from services.biomech.whole_body.model import CENTRE_NAMES, LENGTH_NAMES
 from services.biomech.whole_body.model import MODEL as BODY
 from services.biomech.whole_body.parameters import MEAN_STATURE, lengths_of
+from services.estimation.body.screen import with_directions
 from services.estimation.fusion.fuser import ABSENT_NS, MODEL
 from services.estimation.live_pose import Pace
 from services.estimation.parameters import EstimationParameters
@@ -74,7 +75,7 @@ class FusedPicture:
                 "centres": placed,
             }
         )
-        return self._completed(told)
+        return self._completed(with_directions(told, joints.position[-1], joints.position_std[-1], centres.seen))
 
     @staticmethod
     def _named(centres: JointCentres) -> dict[JointCentre, list[float]]:
