@@ -28,9 +28,10 @@ LARGEST_DEVIATION = radians(15.0)
 
 DEVIATION_SHARE = {"shoulder": 0.75, "elbow": 1.0}
 OTHER_SHARE = 0.6
-"""Error of an angle / deviation that the filter of a standing start says. Its noise is chosen for the least error, and
-that is more noise than there is: on the tuning people the error was half of it at knees, hips, pelvis and trunk, three
-quarters at shoulders. With these shares 96 to 98 % of their angles lie within two deviations, of elbows 95 %."""
+"""Error of an angle / deviation that the filter says. Its noise is chosen for the least error, and that is more noise
+than there is: on the tuning people the error was half of it at knees, hips, pelvis and trunk, three quarters at
+shoulders. With these shares 96 to 98 % of their angles lie within two deviations, of elbows 95 %. Without a standing
+start, offset removed, 0.6 does for every angle (93 to 98 %)."""
 
 _SHOWN_BY = {
     "hip_flexion": ("hip", "knee"), "hip_adduction": ("hip", "knee"), "hip_internal_rotation": ("hip", "knee", "ankle"),
@@ -50,26 +51,42 @@ def shown_by(name: str) -> list[int]:
     return [CENTRE_NAMES.index(JointCentre(f"{joint}_{side}")) for joint in joints]
 
 
+_NEEDED = np.zeros((len(WHOLE_BODY), len(CENTRE_NAMES)), dtype=np.bool_)
+for _place, _dof in enumerate(WHOLE_BODY):
+    _NEEDED[_place, shown_by(_dof.name)] = True
+"""(22, 15) centres without which an angle is a guess."""
+
+
+def _sides(name: str) -> list[int]:
+    return [DOF[f"{name}_{side}"] for side in ("right", "left")]
+
+
+_HIP_ROTATIONS, _KNEES = _sides("hip_internal_rotation"), _sides("knee_flexion")
+_SHOULDER_ROTATIONS, _SHOULDER_FLEXIONS = _sides("shoulder_internal_rotation"), _sides("shoulder_flexion")
+_ABDUCTIONS, _ELBOWS, _CLAVICLES = _sides("shoulder_adduction"), _sides("elbow_flexion"), _sides("clavicle_elevation")
+
+
 def observable(angles: Array, deviations: Array, followed: Sequence[bool] | Flags) -> Flags:
     """(22,) whether each angle may be shown.
 
     angles (22,) rad, deviations (22,) rad; followed (15,): the camera has seen this centre in the last moments.
     """
-    result = np.array([all(followed[m] for m in shown_by(dof.name)) for dof in WHOLE_BODY])
+    result = ~_NEEDED[:, ~np.asarray(followed, dtype=np.bool_)].any(axis=1)
     result &= deviations <= LARGEST_DEVIATION
-    for side in ("right", "left"):
-        result[DOF[f"hip_internal_rotation_{side}"]] &= angles[DOF[f"knee_flexion_{side}"]] >= BENT
-        apart = abs(angles[DOF[f"shoulder_adduction_{side}"]]) < LOCKED
-        bent = angles[DOF[f"elbow_flexion_{side}"]] >= BENT
-        result[DOF[f"shoulder_internal_rotation_{side}"]] &= bent and apart
-        result[DOF[f"shoulder_flexion_{side}"]] &= apart
-        result[DOF[f"clavicle_elevation_{side}"]] = False
-    return result
+    apart = np.abs(angles[_ABDUCTIONS]) < LOCKED
+    result[_HIP_ROTATIONS] &= angles[_KNEES] >= BENT
+    result[_SHOULDER_ROTATIONS] &= (angles[_ELBOWS] >= BENT) & apart
+    result[_SHOULDER_FLEXIONS] &= apart
+    result[_CLAVICLES] = False
+    return np.asarray(result)
 
 
-def likely_deviations(deviations: Array) -> Array:
-    """(22,) rad, how far angles are likely off, from the deviations (22,) of a filter that began standing."""
-    return np.asarray(deviations * _SHARES)
+def likely_deviations(deviations: Array, *, standing: bool) -> Array:
+    """(22,) rad, how far angles are likely off, from the deviations (22,) that the filter says after its start.
+
+    Without a standing start it is how far they are off beside their constant offset, which nobody knows.
+    """
+    return np.asarray(deviations * (_SHARES if standing else OTHER_SHARE))
 
 
 _SHARES = np.array([DEVIATION_SHARE.get(dof.name.partition("_")[0], OTHER_SHARE) for dof in WHOLE_BODY])

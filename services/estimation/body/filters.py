@@ -9,7 +9,6 @@ from numpy.typing import NDArray
 from services.biomech.whole_body.colombel import ColombelCekf
 from services.biomech.whole_body.constrained_ekf import WholeBodyEkf, bounds_of
 from services.biomech.whole_body.kernels.tables import COORDINATES, LENGTHS, SEEN
-from services.biomech.whole_body.model import MODEL
 from services.biomech.whole_body.multibody_kinematics import fit_frame
 from services.biomech.whole_body.observability import likely_deviations
 from services.biomech.whole_body.parameters import StartNoise
@@ -103,8 +102,7 @@ class OurFilter:
         ekf = self._ekf
         first = ekf.velocity + COORDINATES + 3
         accelerations, deviations = ekf.estimate[first : first + COORDINATES - 3], ekf.deviations()
-        if self.absolute:
-            deviations[0] = likely_deviations(deviations[0])
+        deviations[0] = likely_deviations(deviations[0], standing=self.absolute)
         return Told(
             ekf.q.copy(), ekf.lengths.copy(), ekf.rates.copy(), accelerations.copy(), deviations,
             np.ones(COORDINATES - 3, dtype=np.bool_),
@@ -202,8 +200,3 @@ KINDS: dict[str, Kind] = {
 
 NOBODY = np.zeros((15, 3)), np.zeros(15, dtype=np.int64)
 """A frame without anybody, as a filter takes it."""
-
-
-def centres_of(told: Told) -> Array:
-    """(15, 3) m, where the estimate has the joint centres."""
-    return MODEL.centres(told.q, told.lengths)

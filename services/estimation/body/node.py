@@ -50,7 +50,7 @@ class BodyNode:
         self._tracker = BodyTracker(description.estimator, description.anthropometry.height_m, p.body)
         rhythm = TrustedRhythm(len(RHYTHM_CHANNELS), p.filter.rhythm)
         start_rhythm(rhythm, description.known_rhythms)
-        self._coordinates = Coordinates(rhythm, p.body.unknown_std)
+        self._coordinates = Coordinates(rhythm, camera.floor_m, p.body.unknown_std)
         self._learning = RhythmLearning(MODEL)
         unused = {each.name: "the first camera is used" for each in others}
         unused |= {s.name: "this estimator uses the camera" for hub in description.hubs for s in hub.sensors}

@@ -10,9 +10,9 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from services.biomech.whole_body.model import CENTRE_NAMES
+from services.biomech.whole_body.model import CENTRE_NAMES, MODEL
 from services.biomech.whole_body.start import Start
-from services.estimation.body.filters import KINDS, NOBODY, BodyFilter, Told, centres_of, published_start
+from services.estimation.body.filters import KINDS, NOBODY, BodyFilter, Told, published_start
 from services.estimation.body.frames import Frame
 from services.estimation.body.parameters import BodyParameters
 from services.estimation.body.recent import RecentFrames, start_from_fit, start_from_standing
@@ -28,8 +28,11 @@ class Posture(NamedTuple):
     captured_ns: int
     told: Told
     centres: Array  # (15, 3) m, room
+    rotations: Array  # (22, 3, 3) R_room_from_segment behind each joint
     seen: list[bool]  # (15,) the camera saw this centre a moment ago
     valid: list[bool]  # (22,) the angle may be shown
+    start: int  # number of the start that it goes back to
+    absolute: bool  # that start was a standing second
 
 
 class BodyTracker:
@@ -136,8 +139,7 @@ class BodyTracker:
         still = np.zeros_like(self._held.rates)
         self._held = self._held._replace(rates=still, accelerations=still)
         self._visibility.hide(frame.captured_ns)
-        seen, valid = [False] * len(CENTRE_NAMES), [False] * len(still)
-        return [Posture(frame.captured_ns, self._held, centres_of(self._held), seen, valid)]
+        return [self._posture(frame.captured_ns, [False] * len(CENTRE_NAMES), [False] * len(still))]
 
     def _wait(self, frame: Frame) -> list[Posture]:
         """Keep the frame; start when there is enough."""
@@ -204,8 +206,12 @@ class BodyTracker:
             return None
         told = self._held = self._filter.told()
         self._visibility.see(now_ns, frame.state)
-        seen = self._visibility.seen(now_ns)
-        return Posture(now_ns, told, centres_of(told), seen, self._visibility.shown(now_ns, told))
+        return self._posture(now_ns, self._visibility.seen(now_ns), self._visibility.shown(now_ns, told))
+
+    def _posture(self, now_ns: int, seen: list[bool], valid: list[bool]) -> Posture:
+        assert self._held is not None
+        pose = MODEL.pose(self._held.q, self._held.lengths)
+        return Posture(now_ns, self._held, pose.centre, pose.rotation, seen, valid, self.begun, self.absolute)
 
     def snapshot(self) -> State:
         """Everything that changes."""

@@ -52,8 +52,9 @@ class Visibility:
 
     def see(self, now_ns: int, state: States) -> None:
         """Centres that are tracked, not guessed, in this frame."""
-        for m in np.flatnonzero(state == 2):
-            self._tracked_ns[m] = now_ns
+        self._tracked_ns = [
+            now_ns if level == 2 else before for level, before in zip(state.tolist(), self._tracked_ns, strict=True)
+        ]
 
     def seen(self, now_ns: int) -> list[bool]:
         """(15,) tracked within the last `seen_s`."""
@@ -62,12 +63,10 @@ class Visibility:
     def shown(self, now_ns: int, told: Told) -> list[bool]:
         """(22,) angles that may be shown now."""
         flags: Flags = observable(told.q[3:], told.deviations[0], self.seen(now_ns)) & told.usable
-        for i in np.flatnonzero(~flags):
-            self._hidden_ns[i] = now_ns
-        return [
-            bool(flag) and (ns is None or now_ns - ns >= self._after_ns)
-            for flag, ns in zip(flags, self._hidden_ns, strict=True)
-        ]
+        pairs = zip(flags.tolist(), self._hidden_ns, strict=True)
+        self._hidden_ns = [before if flag else now_ns for flag, before in pairs]
+        # What is hidden now was hidden 0 s ago.
+        return [ns is None or now_ns - ns >= self._after_ns for ns in self._hidden_ns]
 
     def snapshot(self) -> State:
         """Times."""

@@ -146,3 +146,26 @@ def test_a_second_camera_is_not_used():
     outputs = sessions.run(node, sessions.messages(sessions.seen(sessions.standing(1.5))))
     assert sessions.calibrations(outputs)[0].unused == {"second": "the first camera is used"}
     assert {c.camera: c.state for c in sessions.pictures(outputs)[-1].cameras}["second"] is SensorState.UNUSED
+
+
+def test_ankles_are_told_while_the_feet_are_on_the_floor():
+    """A squat whose ankles stay: the shank's inclination is pelvis tilt + knee flexion - hip flexion."""
+    q = exercise().copy()
+    rest = sessions.seen(q[:1], std=0.0)[0]
+    centres = sessions.seen(q, std=0.0)
+    feet = centres[:, [11, 14]].mean(axis=1)
+    q[:, :3] += rest[[11, 14]].mean(axis=0) - feet
+    outputs = sessions.run(sessions.node(), sessions.messages(sessions.seen(q, 5)))
+    _, position, valid = sessions.table(outputs)
+    ankles = [sessions.NAMES.index(f"ankle_dorsiflexion_{side}") for side in ("right", "left")]
+    assert valid[:, ankles].mean() > 0.95
+    names = ("pelvis_tilt", "knee_flexion_right", "hip_flexion_right")
+    tilt, knee, hip = (q[:, 3 + sessions.NAMES.index(name)] for name in names)
+    shown = valid[:, ankles[0]]
+    error = np.degrees(position[:, ankles[0]] - (tilt + knee - hip))[shown]
+    assert np.sqrt(np.mean(error**2)) < 4.0
+    stepping = sessions.standing(5.0)
+    stepping[60:, 3 + sessions.NAMES.index("hip_flexion_right")] += 1.0
+    stepping[60:, 3 + sessions.NAMES.index("knee_flexion_right")] += 1.0
+    _, _, valid = sessions.table(sessions.run(sessions.node(), sessions.messages(sessions.seen(stepping, 5))))
+    assert valid[75:, ankles].any(axis=0).tolist() == [False, True]
