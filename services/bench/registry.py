@@ -105,9 +105,16 @@ def tug(json_path: Path | None = None, *subject: str) -> Scoreboard:
     return run(json_path, *subject)
 
 
-def kinect(json_path: Path | None = None, *subject: str) -> Scoreboard:
+def kinect(json_path: Path | None = None, *subject: str, report: Path | None = None) -> Scoreboard:
     """The whole body from a depth camera: simulated tasks, recordings, methods side by side, cost."""
     from services.bench.kinect.board import run
+
+    return run(json_path, *subject, report=report)
+
+
+def exercises(json_path: Path | None = None, *subject: str) -> Scoreboard:
+    """Squats, steps and tilts before a camera, and gait from a camera, against simulated truth."""
+    from services.bench.exercises.board import run
 
     return run(json_path, *subject)
 
@@ -116,6 +123,7 @@ SCOREBOARDS: dict[str, Callable[..., Scoreboard]] = {
     "accuracy": accuracy,
     "chain": chain,
     "events": events,
+    "exercises": exercises,
     "joukov": joukov,
     "kinect": kinect,
     "knee": knee,

@@ -50,12 +50,12 @@ class ExerciseParameters:
 
     upright_s: float = 1.5
     """s of rest after which the lean is the person's own upright."""
-    upright_band: float = 0.04
+    upright_band: float = 0.05
     """rad within which the lean stays in such a rest."""
     upright_first: float = 0.2
     """rad (11 deg) from the vertical within which the first rest is one upright."""
-    upright_later: float = 0.1
-    """rad from the present upright within which a later rest is one."""
+    upright_later: float = 0.06
+    """rad from the first one within which a later rest is upright."""
     upright_memory: int = 5
     """rests whose median is the person's own upright."""
 

@@ -105,9 +105,9 @@ class ExerciseSegmenter:
         """Where both leans begin; it stays while either is under way."""
         if self._upright is None:
             return
-        if course is None or not course.is_valid:
+        if course is None or not course.is_valid or any(watch.is_away for watch in self._watches):
             self._upright.interrupt()
-        elif not any(watch.is_away for watch in self._watches):
+        else:
             self._upright.take(self._newest_ns, float(course.angle[row]))
         for k, watch in enumerate(self._watches):
             watch.set_floor(-self._upright.lean if self._is_to_the_left(k) else self._upright.lean)

@@ -11,6 +11,7 @@ class Upright:
 
     def __init__(self, parameters: ExerciseParameters) -> None:
         self._parameters = parameters
+        self._first: float | None = None
         self._rests: list[float] = []
         self._since: tuple[int, float] | None = None
         self._sum, self._count, self._told = 0.0, 0, False
@@ -30,7 +31,10 @@ class Upright:
         if self._told or captured_ns - self._since[0] < p.upright_s * 1e9:
             return
         self._told, mean = True, self._sum / self._count
-        if abs(mean - self.lean) <= (p.upright_later if self._rests else p.upright_first):
+        if self._first is None and abs(mean) <= p.upright_first:
+            self._first = mean
+        # Against the first one: against the last, small leans would drag it along step by step.
+        if self._first is not None and abs(mean - self._first) <= p.upright_later:
             self._rests = [*self._rests, mean][-p.upright_memory :]
 
     def interrupt(self) -> None:
@@ -40,6 +44,7 @@ class Upright:
     def snapshot(self) -> State:
         """Everything that changes."""
         return {
+            "first": self._first,
             "rests": list(self._rests),
             "since": None if self._since is None else list(self._since),
             "sum": self._sum,
@@ -50,6 +55,6 @@ class Upright:
     def restore(self, state: State) -> None:
         """Inverse of `snapshot`."""
         since = state["since"]
-        self._rests = list(state["rests"])
+        self._first, self._rests = state["first"], list(state["rests"])
         self._since = None if since is None else (since[0], since[1])
         self._sum, self._count, self._told = state["sum"], state["count"], state["told"]

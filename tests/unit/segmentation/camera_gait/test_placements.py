@@ -16,8 +16,8 @@ HEADING = (0.6, 0.8)
 
 
 def foot_m(time_s, side):
-    """On the ground: still for 0.6 of the stride from each contact, then forward by a stride. Contacts of the right foot
-    at whole strides, of the left half a stride later and LONGER / 2 further than the middle."""
+    """On the ground: still for 0.6 of the stride from each contact, then forward by a stride. Contacts of the right
+    foot at whole strides, of the left half a stride later and LONGER / 2 further than the middle."""
     shift_s, shift_m = (0.0, 0.0) if side is Side.RIGHT else (0.5 * STRIDE_S, 0.5 * STRIDE_M + 0.5 * LONGER)
     u, whole = np.modf((time_s - shift_s) / STRIDE_S + 10.0)
     swing = np.clip((u - 0.6) / 0.4, 0.0, 1.0)

@@ -195,3 +195,11 @@ def test_how_samples_were_batched_decides_nothing():
     one, many = (found_in(Task.TRUNK_TILT_FRONTAL, aside(sway), rows=rows) for rows in (1, 9))
     assert [each.model_dump() for each in one] == [each.model_dump() for each in many]
     assert len(one) == 6
+
+
+def test_coming_back_to_a_lean_again_and_again_is_no_rest_there():
+    sway = np.concatenate([bump(2.2), -bump(2.2)])
+    angle = 0.3 * np.concatenate([*[sway] * 8, still(2)])
+    made = found_in(Task.TRUNK_TILT_FRONTAL, aside(angle))
+    assert [one.side for one in made] == [Side.RIGHT, Side.LEFT] * 8
+    assert all(one.valid and abs(one.start_angle) < 0.05 and abs(one.end_angle) < 0.05 for one in made)

@@ -36,6 +36,14 @@ def test_it_follows_a_person_who_comes_to_rest_a_little_aside():
     assert upright.lean == pytest.approx(0.05)
 
 
+def test_small_held_leans_do_not_drag_it_along():
+    upright = Upright(ExerciseParameters())
+    for k in range(30):
+        stand(upright, min(0.02 * k, 0.3), from_s=10 * k, seconds=3)
+        stand(upright, -0.3, from_s=10 * k + 3, seconds=0.2)
+    assert upright.lean <= 0.06
+
+
 def test_moving_and_short_rests_tell_nothing():
     upright = Upright(ExerciseParameters())
     for i in range(300):
