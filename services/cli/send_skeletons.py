@@ -41,6 +41,7 @@ def send(spec: str, host: str, port: int, console: Console) -> tuple[int, float]
     family, kind, protocol, _, address = socket.getaddrinfo(host, port, type=socket.SOCK_DGRAM)[0]
     columns = (TextColumn("{task.description}"), BarColumn(), TextColumn("{task.fields[at]}"))
     sent, at_s = 0, 0.0
+    console.print(f'sending to {host} port {port}; to see it live: ambula replay "device:kinect?port={port}"')
     with socket.socket(family, kind, protocol) as sending, Progress(*columns, console=console) as progress:
         bar = progress.add_task(f"sending {description.title}", total=description.duration_s, at="")
         began_s: float | None = None

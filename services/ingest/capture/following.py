@@ -45,7 +45,7 @@ class Follower:
             return NOBODY
         for person in people:
             if person is not None and person is not self._patient:
-                person.beside_ns += now_ns - self._last_ns
+                person.beside_ns += now_ns - max(self._last_ns, person.first_ns)
         self._last_ns = now_ns
         return Followed(self._number, people.index(self._patient))
 
