@@ -1,8 +1,10 @@
 """A table of measured figures beside what they should be."""
 
 import json
+from collections.abc import Sequence
 from dataclasses import asdict, dataclass
 from pathlib import Path
+from typing import Protocol
 
 from rich.console import Console
 from rich.table import Table
@@ -41,6 +43,22 @@ def informative(
     return Row(name, value, unit, None, None, baseline, detail)
 
 
+class Grid(Protocol):
+    """A table of text to stand above the figures."""
+
+    @property
+    def caption(self) -> str:
+        """Its title."""
+
+    @property
+    def header(self) -> Sequence[str]:
+        """Of the columns."""
+
+    @property
+    def rows(self) -> Sequence[Sequence[str]]:
+        """The first column is a name."""
+
+
 @dataclass(frozen=True)
 class Scoreboard:
     """The figures of one benchmark."""
@@ -48,6 +66,7 @@ class Scoreboard:
     title: str
     rows: list[Row]
     note: str = ""
+    grids: Sequence[Grid] = ()
 
     @property
     def missed(self) -> list[Row]:
@@ -55,7 +74,10 @@ class Scoreboard:
         return [row for row in self.rows if row.met is False]
 
     def print(self, *, details: bool = False) -> None:
-        """Write the table to the terminal."""
+        """Write the tables to the terminal."""
+        console = Console()
+        for grid in self.grids:
+            console.print(_drawn(grid))
         table = Table(title=self.title, caption=self.note or None, caption_justify="left")
         for heading in ("figure", "value", "unit", "target", "", "baseline"):
             number = heading in ("value", "baseline")
@@ -65,7 +87,6 @@ class Scoreboard:
                 table.add_row(
                     row.name, _number(row.value), row.unit, row.target or "", _mark(row.met), _number(row.baseline)
                 )
-        console = Console()
         console.print(table)
         hidden = 0 if details else sum(row.detail for row in self.rows)
         if hidden:
@@ -76,6 +97,15 @@ class Scoreboard:
         rows = [{name: value for name, value in asdict(row).items() if name != "detail"} for row in self.rows]
         document = {"title": self.title, "note": self.note, "rows": rows}
         path.write_text(json.dumps(document, indent=2) + "\n")
+
+
+def _drawn(grid: Grid) -> Table:
+    table = Table(title=grid.caption)
+    for i, heading in enumerate(grid.header):
+        table.add_column(heading, justify="right" if i else "left", overflow="fold")
+    for row in grid.rows:
+        table.add_row(*row)
+    return table
 
 
 def _number(value: float | None) -> str:

@@ -15,6 +15,7 @@ from schemas.session import WalkPath
 from schemas.vocabulary import ESTIMATORS, Task
 from services.cli.console import err, out, told
 from services.cli.send_skeletons import send_skeletons
+from services.cli.tune import tune
 from services.ingest.choices import Choices
 
 app = typer.Typer(
@@ -253,6 +254,9 @@ def doctor(
         table.add_row(MARKS[finding.ok], finding.subject, finding.says)
     out.print(table)
     raise typer.Exit(any(finding.ok is False for finding in findings))
+
+
+app.command()(tune)
 
 
 def _positive(text: str) -> float:
