@@ -54,7 +54,7 @@ class FusionParameters:
     """(11,) rad."""
     camera_noise_s: float = 0.5
     """s for which an error of the camera stays the same: so many frames tell as much as one. [F]"""
-    manner_noise_s: float = 0.1
+    manner_noise_s: float = 0.03
     """The same for the manner, whose terms change within a stride, as much of the error does. [F]"""
     inertial_memory_s: float = 300.0
     """s after which an offset of the inertial sensors is another. [I]"""
@@ -68,7 +68,7 @@ class FusionParameters:
     """s after which the camera's manner is another: the person has moved elsewhere. [F]"""
     harmonics: int = 4
     """Of the stride that the camera's manner may have; two leave 1 deg more at the knee, six gain 0.2 deg. [F]"""
-    stride_noise: float = 1.5
+    stride_noise: float = 4.0
     """Spread of the first harmonic's coefficients, in the camera's noise; others are smaller by their order. [F]"""
     residual_memory_s: float = 20.0
     """s over which it is averaged how well the camera's manner is known."""

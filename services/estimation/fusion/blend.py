@@ -13,6 +13,8 @@ from services.flow.node import State, pack_array, unpack_array
 
 Array = NDArray[np.float64]
 N = len(SHARED)
+ADJOINING_S = 0.05
+"""Over a longer silence nobody knows how an angle went on, so there is nothing to join."""
 
 
 class Leading(IntEnum):
@@ -42,12 +44,14 @@ class Blend:
             if told is not None:
                 leading[told.valid] = source
                 raw = Told(*(np.where(told.valid, new, old) for new, old in zip(told, raw, strict=True)))
-        changed = (leading != self._leading) & (leading > 0) & (self._leading > 0)
-        expected = self._position + self._velocity * min(dt_s, self._joined_s)
+        changed = (leading != self._leading) & (leading > 0) & (self._leading > 0) & (dt_s <= ADJOINING_S)
+        expected = self._position + self._velocity * dt_s
         self._step *= exp(-max(dt_s, 0.0) / self._joined_s)
         # A heading that is whole turns apart is the same one.
         self._step[changed] = wrapped(expected - raw.position)[changed]
         self._step[leading == 0] = 0.0
+        if dt_s > ADJOINING_S:
+            self._step[:] = 0.0
         self._step[(self._leading == 0) & (leading > 0)] = 0.0
         self._leading = leading
         self._position, self._velocity, self._captured_ns = raw.position + self._step, raw.velocity, captured_ns
