@@ -228,3 +228,34 @@ def test_it_is_deterministic_whatever_the_order_of_bodies():
     other = Actor(1.7, walk((3.0, -1.6, -1.6), (7.0, -1.6, 1.8)), lambda t: 2 if 3.0 <= t <= 7.0 else None)
     told = [play([patient, other], 9.0, seed=seed, noise=0.0) for seed in (1, 2)]
     assert told[0] == told[1]
+
+
+def random_clinic(seed):
+    """A patient who is hidden every few seconds, mostly by somebody walking through, and a therapist beside."""
+    rng = np.random.default_rng(seed)
+    side, z = rng.uniform(-0.3, 0.3), rng.uniform(1.0, 1.4) * rng.choice([-1, 1])
+    spans, hidden, t = [(0, 1)], [], 3.0 + rng.uniform(0, 2)
+    while t < 26:
+        away_s = rng.uniform(0.0, 1.8)
+        spans += [(t, None), (t + away_s, 100 + len(spans))]
+        hidden.append(t + 0.5 * away_s)
+        t += away_s + rng.uniform(2.5, 6)
+    patient = Actor(rng.uniform(1.5, 1.9), lambda t: (-2.5 + 0.15 * np.sin(2 * t), side), ids(*spans))
+    therapist = Actor(rng.uniform(1.5, 1.9), lambda t: (-2.2, z + 0.2 * np.sin(t)), lambda t: 50 + int(t / 8.0))
+    passing = []
+    for k, middle in enumerate(hidden):
+        speed, depth = rng.uniform(0.8, 1.4) * rng.choice([-1, 1]), rng.uniform(-1.9, -1.3)
+        path = walk((middle - 2, depth, -2 * speed), (middle + 2, depth, 2 * speed))
+        passing.append(
+            Actor(rng.uniform(1.5, 1.9), path, ids((0, None), (middle - 1.6, 1000 + k), (middle + 1.6, None)))
+        )
+    return patient, [patient, therapist, *passing]
+
+
+@pytest.mark.parametrize("seed", range(100, 106))
+def test_in_a_busy_clinic_nobody_else_is_ever_followed(seed):
+    patient, everybody = random_clinic(seed)
+    told = play(everybody, 30.0, noise=0.03, seed=seed, drop=0.03)
+    assert {actor for _, _, actor in told} <= {None, patient}
+    in_view = [actor for t, _, actor in told if t > 2.0 and patient.ids(t) is not None]
+    assert in_view.count(patient) > 0.9 * len(in_view)
