@@ -14,8 +14,15 @@ const deep = (chart, range) => ({ ...chart, range });
 const WHOLE_BODY = {
   squat: {
     charts: [deep(knees, [0, 120]), deep(hips, [-10, 100]), arms],
-    angles: ["knee_flexion", "hip_flexion", "hip_adduction", "hip_internal_rotation", "arm_elevation"],
-    middle: ["trunk_lean_forward", "trunk_lean_right", "pelvis_tilt"],
+    angles: [
+      "knee_flexion",
+      "hip_flexion",
+      "ankle_dorsiflexion",
+      "hip_adduction",
+      "hip_internal_rotation",
+      "arm_elevation",
+    ],
+    middle: ["trunk_lean_forward", "trunk_lean_right"],
     compared: "knee_flexion",
   },
   stepping: {
