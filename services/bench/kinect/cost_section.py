@@ -6,6 +6,8 @@ from collections.abc import Callable
 import numpy as np
 from numpy.typing import NDArray
 
+from schemas.signals import SKELETON
+from schemas.skeleton import SkeletonBatch
 from services.bench.scoreboard import Row, at_most, informative
 from services.biomech.whole_body import textbook
 from services.biomech.whole_body.constrained_ekf import OURS, WholeBodyEkf
@@ -13,10 +15,13 @@ from services.biomech.whole_body.model import MODEL
 from services.biomech.whole_body.multibody_kinematics import fit_frame
 from services.biomech.whole_body.parameters import REST_DEG, lengths_of, per_angle
 from services.biomech.whole_body.start import Start, standing_start
+from services.estimation.node import build
+from services.ingest.source import iter_messages, open_source
 
 Array = NDArray[np.float64]
 
 NOTE = "cost: processor time, least of many repetitions, one core; compile times are in the README"
+SESSION = "synthetic:squat"
 DT_S = 1.0 / 30.0
 TRACKED = np.full(15, 2)
 
@@ -50,7 +55,24 @@ def cost_rows() -> list[Row]:
         plain = least_us(lambda ekf=ekf: _textbook_frame(ekf, centres), 5, 8)  # type: ignore[misc]
         rows.append(at_most(f"cost: frame {name} bias states, {len(ekf.x)} states", ours, "us", limit, plain))
     fitted = least_us(lambda: fit_frame(centres, TRACKED, 1.7), 3, 8)
-    return [*rows, informative("cost: bounded fit of one frame from rest, lengths free", fitted, "us")]
+    rows.append(informative("cost: bounded fit of one frame from rest, lengths free", fitted, "us"))
+    return [*rows, informative("cost: whole node, a frame a message, its messages and pictures", node_us(), "us")]
+
+
+def node_us() -> float:
+    """us of processor time for a frame of simulated squats through the estimation node; the least of a few runs."""
+    source = open_source(SESSION)
+    messages = [
+        m for m in iter_messages(source) if m.stream.signal is SKELETON and isinstance(m.payload, SkeletonBatch)
+    ]
+    frames = sum(len(m.payload.captured_ns) for m in messages if isinstance(m.payload, SkeletonBatch))
+
+    def run() -> None:
+        node = build(source.describe())
+        for message in messages:
+            node.step(message)
+
+    return least_us(run, 1, 4) / frames
 
 
 def _textbook_frame(ekf: WholeBodyEkf, centres: Array) -> None:

@@ -19,6 +19,7 @@ class BodyParameters:
     predict_s: float = 0.3  # s without the person in which the filter goes on by itself
     remember_s: float = 12.0  # s of frames that a mark of the operator may lie back; the page offers up to 10 s
     seen_s: float = 0.4  # s for which a centre counts as seen after it was tracked last
-    show_after_s: float = 0.3  # s for which an angle must have been observable before it is shown: no flicker
+    show_after_s: float = 0.3  # s for which an angle must have been observable before it is shown
+    hide_after_s: float = 0.15  # s for which it must not have been before it is hidden: the deviation has peaks
     unknown_std: float = 0.5  # rad, rad/s of what is not estimated
     population_quality: float = 0.4  # best quality of a calibration without a standing second, as in walking

@@ -85,7 +85,7 @@ class BodyTracker:
         self._recent.add(frame)
         if was_there_ns is not None and self._is_away(frame.captured_ns, was_there_ns):
             self._filter.rejoin(frame.centres, frame.state)
-            self._visibility.hide(frame.captured_ns)
+            self._visibility.hide()
             self._newest_ns = frame.captured_ns
         posture = self._follow(frame)
         if posture is None:
@@ -138,7 +138,7 @@ class BodyTracker:
         assert self._held is not None
         still = np.zeros_like(self._held.rates)
         self._held = self._held._replace(rates=still, accelerations=still)
-        self._visibility.hide(frame.captured_ns)
+        self._visibility.hide()
         return [self._posture(frame.captured_ns, [False] * len(CENTRE_NAMES), [False] * len(still))]
 
     def _wait(self, frame: Frame) -> list[Posture]:

@@ -7,7 +7,7 @@ from numpy.typing import NDArray
 
 from schemas.vocabulary import JointCentre, Segment
 from services.biomech.whole_body.model import CENTRE_NAMES
-from services.biomech.whole_body.observability import observable
+from services.biomech.whole_body.observability import LARGEST_DEVIATION, observable
 from services.estimation.body.filters import Told
 from services.estimation.body.parameters import BodyParameters
 from services.flow.node import State
@@ -32,23 +32,30 @@ SEGMENT_CENTRES = {
 
 
 class Visibility:
-    """Of one person in view. An angle is shown once it has been observable for `show_after_s`, hidden at once."""
+    """Of one person in view. An angle is shown once it has been observable for `show_after_s`.
+
+    It is hidden at once where the posture does not show it or its centres are not seen, and when its deviation has been
+    too large for `hide_after_s`: that has peaks of a frame or two, and travels along.
+    """
 
     def __init__(self, parameters: BodyParameters) -> None:
-        self._seen_ns, self._after_ns = round(parameters.seen_s * 1e9), round(parameters.show_after_s * 1e9)
+        self._seen_ns = round(parameters.seen_s * 1e9)
+        self._after_ns = {True: round(parameters.show_after_s * 1e9), False: round(parameters.hide_after_s * 1e9)}
         self._tracked_ns: list[int | None] = [None] * len(CENTRE_NAMES)
-        self._hidden_ns: list[int | None] = [None] * ANGLES
-        """Per angle: when it was last not observable; None while it has been observable since the start."""
+        self._shown: list[bool] = []
+        """Per angle; empty before the first frame of a start."""
+        self._contrary_ns: list[int | None] = [None] * ANGLES
+        """Per angle: since when it should be shown but is not, or the other way round."""
 
     def begin(self) -> None:
         """A new start: nothing has been seen yet, and what is observable at once is shown at once."""
         self._tracked_ns = [None] * len(CENTRE_NAMES)
-        self._hidden_ns = [None] * ANGLES
+        self._shown, self._contrary_ns = [], [None] * ANGLES
 
-    def hide(self, now_ns: int) -> None:
+    def hide(self) -> None:
         """Nothing is seen, so that everything has to be observable for a while again."""
         self._tracked_ns = [None] * len(CENTRE_NAMES)
-        self._hidden_ns = [now_ns] * ANGLES
+        self._shown, self._contrary_ns = [False] * ANGLES, [None] * ANGLES
 
     def see(self, now_ns: int, state: States) -> None:
         """Centres that are tracked, not guessed, in this frame."""
@@ -62,19 +69,34 @@ class Visibility:
 
     def shown(self, now_ns: int, told: Told) -> list[bool]:
         """(22,) angles that may be shown now."""
-        flags: Flags = observable(told.q[3:], told.deviations[0], self.seen(now_ns)) & told.usable
-        pairs = zip(flags.tolist(), self._hidden_ns, strict=True)
-        self._hidden_ns = [before if flag else now_ns for flag, before in pairs]
-        # What is hidden now was hidden 0 s ago.
-        return [ns is None or now_ns - ns >= self._after_ns for ns in self._hidden_ns]
+        possible: Flags = observable(told.q[3:], np.zeros(ANGLES), self.seen(now_ns)) & told.usable
+        wanted = (possible & (told.deviations[0] <= LARGEST_DEVIATION)).tolist()
+        if not self._shown:
+            self._shown = list(wanted)
+        for i, (flag, can_be, is_shown) in enumerate(zip(wanted, possible.tolist(), self._shown, strict=True)):
+            since_ns = self._contrary_ns[i]
+            if flag == is_shown:
+                self._contrary_ns[i] = None
+            elif not can_be:
+                self._shown[i], self._contrary_ns[i] = False, None
+            elif since_ns is None:
+                self._contrary_ns[i] = now_ns
+            elif now_ns - since_ns >= self._after_ns[flag]:
+                self._shown[i], self._contrary_ns[i] = flag, None
+        return list(self._shown)
 
     def snapshot(self) -> State:
-        """Times."""
-        return {"tracked_ns": list(self._tracked_ns), "hidden_ns": list(self._hidden_ns)}
+        """Times and flags."""
+        return {
+            "tracked_ns": list(self._tracked_ns),
+            "shown": list(self._shown),
+            "contrary_ns": list(self._contrary_ns),
+        }
 
     def restore(self, state: State) -> None:
         """Inverse of `snapshot`."""
-        self._tracked_ns, self._hidden_ns = list(state["tracked_ns"]), list(state["hidden_ns"])
+        self._tracked_ns, self._shown = list(state["tracked_ns"]), list(state["shown"])
+        self._contrary_ns = list(state["contrary_ns"])
 
 
 def observed_segments(seen: Iterable[bool]) -> list[Segment]:
