@@ -14,6 +14,7 @@ Array = NDArray[np.float64]
 Flags = NDArray[np.bool_]
 
 LEGS_APART = "the legs did not move together"
+NOT_STANDING = "it did not begin and end standing"
 WALKED = "the person walked"
 
 ARM_ELEVATION = "arm_elevation"
@@ -95,6 +96,9 @@ class BodyTrail:
             right, left = (table[:, INDEX[f"knee_flexion_{side}"]] for side in (Side.RIGHT, Side.LEFT))
             if np.ptp(right - left) > p.legs_apart_share * reach:
                 return LEGS_APART
+            depth = right + left
+            if max(depth[0], depth[-1]) > p.standing_share * depth.max():
+                return NOT_STANDING
         return None
 
     def _within(self, start_ns: int, end_ns: int) -> slice:

@@ -45,6 +45,9 @@ class ExerciseParameters:
     legs_apart_share: float = 1.0
     """share of a squat's range by which the difference of the knees may change within it. A walk changes it by three
     times the range of their mean; a person who spares one leg by half of it."""
+    standing_share: float = 0.5
+    """share of a squat's depth, from straight knees, above which its ends are not standing: whoever is already down
+    and moves there, or whose knees the camera guesses, makes none (proposal)."""
     walked_m: float = 0.35
     """m on the floor that the pelvis may be away at the end of a repetition from where it was at its start."""
 

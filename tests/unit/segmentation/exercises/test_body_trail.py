@@ -7,7 +7,7 @@ import pytest
 
 from schemas.vocabulary import JointCentre, Side, Task
 from services.segmentation.batch import COLUMNS, INDEX, Batch, Centres
-from services.segmentation.exercises.body_trail import LEGS_APART, WALKED, BodyTrail, arm_elevation
+from services.segmentation.exercises.body_trail import LEGS_APART, NOT_STANDING, WALKED, BodyTrail, arm_elevation
 from services.segmentation.exercises.parameters import ExerciseParameters
 
 CENTRE = {centre: i for i, centre in enumerate(JointCentre)}
@@ -98,3 +98,13 @@ def test_split_and_resume_and_forgetting():
     assert json.dumps(second.snapshot()) == state
     assert second.ranges(31_000, 50_000) == first.ranges(31_000, 50_000)
     assert second.ranges(0, 50_000) == first.ranges(12_000, 50_000)
+
+
+def test_who_is_already_down_makes_no_squat():
+    bounce = np.sin(np.linspace(0, np.pi, 30))
+    down = trail()
+    down.append(batch_of(knee_flexion_left=1.2 + 0.4 * bounce, knee_flexion_right=1.2 + 0.4 * bounce))
+    assert down.flaw(0, 29_000, 0.4) == NOT_STANDING
+    crouched = trail()
+    crouched.append(batch_of(knee_flexion_left=0.5 + bounce, knee_flexion_right=0.5 + bounce))
+    assert crouched.flaw(0, 29_000, 1.0) is None
