@@ -21,7 +21,7 @@ from tests.unit.ingest.capture.test_capture_source import Sender, free_port
 pytestmark = pytest.mark.system
 
 IMPATIENT = dataclasses.replace(
-    CAPTURE, first_frame_s=0.4, look_s=0.2, sending_s=0.5, other_sender_s=0.3, warn_after_s=0.3, end_after_s=1.0
+    CAPTURE, first_frame_s=1.5, look_s=0.2, sending_s=0.8, other_sender_s=0.3, warn_after_s=0.3, end_after_s=2.0
 )
 
 

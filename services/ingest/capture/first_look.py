@@ -23,7 +23,7 @@ class NothingArrives(SourceError):
 def first_look(port: CapturePort, parameters: CaptureParameters) -> list[Arrival]:
     """The newest frames of a camera that sends. Raises NothingArrives after a while, saying what did arrive."""
     give_up_s = time.monotonic() + parameters.first_frame_s
-    while not port.recent():
+    while not (seen := port.recent()):
         if time.monotonic() >= give_up_s:
             complaint = port.complaint()
             wrong = f"; the last datagram was refused: {complaint}" if complaint is not None else ""
@@ -33,9 +33,10 @@ def first_look(port: CapturePort, parameters: CaptureParameters) -> list[Arrival
             )
         time.sleep(parameters.tick_s)
     enough_s = time.monotonic() + parameters.look_s
-    while len(port.recent()) < parameters.look_frames and time.monotonic() < enough_s:
+    while len(seen) < parameters.look_frames and time.monotonic() < enough_s:
         time.sleep(parameters.tick_s)
-    return port.recent()
+        seen = port.recent() or seen
+    return seen
 
 
 def view_of_frames(frames: list[CameraFrame]) -> tuple[CameraView, float | None]:
