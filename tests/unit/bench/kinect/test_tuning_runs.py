@@ -96,7 +96,7 @@ def test_it_prints_where_values_began_and_ended_and_writes_only_what_was_tuned(t
     tuning_board.run(Order(["ours"], [2], processes=1), console, file)
     said = console.file.getvalue()
     assert "4.00 -> 3.00" in said
-    assert "0.0008 -> 0.002" in said
+    assert f"{OURS.camera.variance:.3g} -> 0.002" in said
     assert "as it began" in said
     assert "2: (0.002, 0.05, 7" in file.read_text()
     assert "person 0" in file.read_text()
