@@ -5,9 +5,9 @@ from schemas.kinematics import LivePose
 from schemas.session import SessionDescription
 from schemas.signals import LIVE_POSE
 from services.estimation.estimates import OUTPUTS
-from services.estimation.live_pose import waiting_pose
+from services.estimation.live_pose import Watched, waiting_pose
 from services.estimation.parameters import EstimationParameters
-from services.estimation.sensor_status import unused_statuses
+from services.estimation.sensor_status import unused_cameras, unused_statuses
 from services.flow.message import Message, Output, Stream
 from services.flow.node import State
 from services.flow.raw_streams import raw_streams
@@ -22,6 +22,7 @@ class RefusingNode:
         self.reason = reason
         self._streams = tuple(raw_streams(description.model_copy(update={"reference": []})))
         self._names = [sensor.name for hub in description.hubs for sensor in hub.sensors]
+        self._watched = Watched({}, unused_cameras(camera.name for camera in description.cameras))
         self._period_ns = round(1e9 / EstimationParameters().live_rate_hz)
         self._next_ns = 0
 
@@ -47,7 +48,7 @@ class RefusingNode:
         return []
 
     def _pose(self, captured_ns: int) -> LivePose:
-        return waiting_pose(captured_ns, "waiting", self.reason, "", unused_statuses(self._names))
+        return waiting_pose(captured_ns, "waiting", self.reason, "", unused_statuses(self._names), self._watched)
 
     def snapshot(self) -> State:
         """When it speaks next."""

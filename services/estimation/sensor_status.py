@@ -5,7 +5,7 @@ from collections.abc import Iterable, Sequence
 import numpy as np
 from numpy.typing import NDArray
 
-from schemas.kinematics import SensorStatus
+from schemas.kinematics import CameraStatus, SensorStatus
 from schemas.session import SensorDescription
 from schemas.vocabulary import SensorState
 from services.estimation.sensor_checks import SensorChecks
@@ -40,6 +40,11 @@ def sensor_statuses(
 def unused_statuses(unused: Iterable[str]) -> list[SensorStatus]:
     """Sensors, by name, that were never meant to be used with what else is worn."""
     return [SensorStatus(sensor=name, state=SensorState.UNUSED, since_ns=0) for name in unused]
+
+
+def unused_cameras(names: Iterable[str]) -> list[CameraStatus]:
+    """Cameras, by name, that are not used."""
+    return [CameraStatus(camera=name, state=SensorState.UNUSED, people=0, since_ns=0) for name in names]
 
 
 def sensor_troubles(statuses: Sequence[SensorStatus]) -> str:

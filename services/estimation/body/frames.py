@@ -29,7 +29,7 @@ class Frame(NamedTuple):
     captured_ns: int
     body: int | None  # None: nobody was followed
     people: int
-    centres: Array  # (15, 3) m, room axes, in the order of JointCentre; 0 where not tracked
+    centres: Array  # (15, 3) m, room axes, in the order of JointCentre; 0 where not tracked; of single precision
     state: States  # (15,) 0 not tracked, 1 inferred, 2 tracked
 
     @property
@@ -87,7 +87,9 @@ class FrameIntake:
         self, captured_ns: int, body: int | None, people: int, position: list[list[float] | None],
         state: list[TrackingState],
     ) -> Frame:  # fmt: skip
-        centres, levels = np.zeros((len(CENTRE_NAMES), 3)), np.zeros(len(CENTRE_NAMES), dtype=np.int64)
+        # Single precision, 1 um: the last seconds of frames are in every checkpoint.
+        centres = np.zeros((len(CENTRE_NAMES), 3), dtype=np.float32)
+        levels = np.zeros(len(CENTRE_NAMES), dtype=np.int64)
         for m, place in enumerate(self._places):
             found, level = position[place], LEVEL[state[place]]
             if found is None or level == 0 or body is None:
@@ -97,7 +99,7 @@ class FrameIntake:
                 self._refused[reason] += 1
                 continue
             centres[m], levels[m] = found, level
-        return Frame(captured_ns, body, people, centres, levels)
+        return Frame(captured_ns, body, people, centres.astype(np.float64), levels)
 
     def state_at(self, now_ns: int, silent_s: float) -> tuple[SensorState, int]:
         """State of the camera and since when, ns of session time."""

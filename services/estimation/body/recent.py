@@ -1,5 +1,6 @@
 """The last seconds of the person in view, for a start from them and for marks of the operator."""
 
+import base64
 from collections.abc import Sequence
 
 import numpy as np
@@ -15,7 +16,7 @@ from services.biomech.whole_body.start import (
 )
 from services.estimation.body.frames import Frame
 from services.estimation.body.parameters import BodyParameters
-from services.flow.node import State, pack_array, unpack_array
+from services.flow.node import State
 
 Array = NDArray[np.float64]
 States = NDArray[np.int64]
@@ -73,17 +74,26 @@ class RecentFrames:
         """The frames."""
         return {
             "numbers": [[f.captured_ns, f.body, f.people] for f in self._frames],
-            "centres": pack_array(np.array([f.centres for f in self._frames]).reshape(-1, 15, 3)),
+            "centres": _pack(np.array([f.centres for f in self._frames]).reshape(-1, 15, 3)),
             "state": ["".join(map(str, f.state)) for f in self._frames],
         }
 
     def restore(self, state: State) -> None:
         """Inverse of `snapshot`."""
-        rows = zip(state["numbers"], unpack_array(state["centres"]), state["state"], strict=True)
+        rows = zip(state["numbers"], _unpack(state["centres"]), state["state"], strict=True)
         self._frames = [
             Frame(captured_ns, body, people, centres.copy(), np.array([int(level) for level in levels], dtype=np.int64))
             for (captured_ns, body, people), centres, levels in rows
         ]
+
+
+def _pack(centres: Array) -> str:
+    """(n, 15, 3) of single precision as text, to the bit."""
+    return base64.b64encode(centres.astype("<f4").tobytes()).decode("ascii")
+
+
+def _unpack(text: str) -> Array:
+    return np.frombuffer(base64.b64decode(text), dtype="<f4").reshape(-1, 15, 3).astype(np.float64)
 
 
 def stacked(frames: Sequence[Frame]) -> tuple[Array, States]:

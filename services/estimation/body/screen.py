@@ -4,7 +4,6 @@ from collections.abc import Sequence
 
 from schemas.kinematics import CameraStatus, LivePose
 from schemas.session import SessionDescription
-from schemas.vocabulary import SensorState
 from services.biomech.whole_body.directions import directions
 from services.biomech.whole_body.model import CENTRE_NAMES
 from services.estimation.body.coordinates import MODEL
@@ -12,7 +11,7 @@ from services.estimation.body.frames import Frame, FrameIntake
 from services.estimation.body.tracker import BodyTracker, Posture
 from services.estimation.live_pose import Pace, Watched, estimated_pose, waiting_pose
 from services.estimation.rows import Row
-from services.estimation.sensor_status import unused_statuses
+from services.estimation.sensor_status import unused_cameras, unused_statuses
 
 NOBODY = "Nobody in view"
 SEVERAL = "{people} people in view: only one of them is followed"
@@ -77,8 +76,7 @@ class Screen:
     def _cameras(self, now_ns: int, people: int) -> list[CameraStatus]:
         state, since_ns = self._intake.state_at(now_ns, self._silent_s)
         used = CameraStatus(camera=self._intake.camera.name, state=state, people=people, since_ns=since_ns)
-        unused = [CameraStatus(camera=name, state=SensorState.UNUSED, people=0, since_ns=0) for name in self._others]
-        return [used, *unused]
+        return [used, *unused_cameras(self._others)]
 
 
 def with_directions(
