@@ -13,10 +13,11 @@ from services.biomech.spm.paired import NODES
 
 
 def curves(mean: float, seed: int) -> np.ndarray:
-    """Seven people's errors, deg."""
+    """(people, repetitions, nodes) of errors, deg."""
     generator = np.random.default_rng(seed)
     wave = np.sin(np.linspace(0.0, 9.0, NODES) + generator.uniform(0.0, 6.0, size=(7, 1)))
-    return mean + generator.normal(0.0, 0.3, size=(7, 1)) + 0.5 * wave
+    people = mean + generator.normal(0.0, 0.3, size=(7, 1)) + 0.5 * wave
+    return people[:, None, :] + generator.normal(0.0, 0.1, size=(7, 3, 1)) * np.ones(NODES)
 
 
 def test_borders_are_where_the_number_changes() -> None:
@@ -38,7 +39,7 @@ def test_a_trial_has_ten_repetitions_and_the_truth_moves_in_them() -> None:
 def test_curves_of_a_trial_are_absolute_errors_over_a_repetition() -> None:
     found = curves_of(Piece(BEST, "clinic", 1, 3))
     assert list(found) == list(PUBLISHED[3])
-    assert all(curve.shape == (NODES,) and (curve >= 0.0).all() for curve in found.values())
+    assert all(curve.shape == (10, NODES) and (curve >= 0.0).all() for curve in found.values())
     assert 0.5 < np.mean(list(found.values())) < 10.0
 
 
@@ -46,6 +47,14 @@ def test_positive_is_where_the_second_is_nearer() -> None:
     one = compared(1, 7, curves(9.0, 1), curves(3.0, 2))
     assert one.spm.share(positive=True) > 0.9
     assert one.flips.p == pytest.approx(2 / 128)
+    assert one.first.shape == (7, NODES)
+
+
+def test_repetitions_taken_for_pairs_lower_the_threshold() -> None:
+    one = compared(1, 7, curves(4.0, 1), curves(3.0, 2))
+    assert one.pooled.field.nu == 20
+    assert one.spm.field.nu == 6
+    assert one.pooled.threshold < one.spm.threshold
 
 
 def test_the_section_compares_every_angle_both_ways(monkeypatch: pytest.MonkeyPatch) -> None:
