@@ -61,17 +61,16 @@ class Screen:
 
     def _said(self, frame: Frame, now_ns: int) -> tuple[str, list[CameraStatus]]:
         """What matters most, and the cameras' states."""
-        tracker = self._tracker
-        words = ""
         if not frame.is_somebody:
-            words = NOBODY
-        elif frame.people > 1:
-            words = SEVERAL.format(people=frame.people)
-        elif tracker.diverged:
-            words = DIVERGED.format(times=tracker.diverged)
+            return NOBODY, self._cameras(now_ns, frame.people)
+        tracker, words = self._tracker, []
+        if frame.people > 1:
+            words.append(SEVERAL.format(people=frame.people))
+        if tracker.diverged:
+            words.append(DIVERGED.format(times=tracker.diverged))
         elif tracker.can_be_absolute and not tracker.absolute:
-            words = RELATIVE if tracker.is_following else STAND
-        return words, self._cameras(now_ns, frame.people)
+            words.append(RELATIVE if tracker.is_following else STAND)
+        return ". ".join(words), self._cameras(now_ns, frame.people)
 
     def _cameras(self, now_ns: int, people: int) -> list[CameraStatus]:
         state, since_ns = self._intake.state_at(now_ns, self._silent_s)
