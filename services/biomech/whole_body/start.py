@@ -1,7 +1,8 @@
 """Where the filter starts: from a standing, still second, or from a posture fitted to the first frames.
 
-Constant biases of the centres can be told from the posture only where the posture is known: while standing. So a
-start that is not standing has none, and its absolute angles carry the camera's offsets.
+Constant biases of the centres are told from the posture, which is known while standing. A start that is not standing
+has bias states, too: that people move within limits and about a rest posture tells a good part of them, but absolute
+angles still carry the camera's offsets.
 """
 
 from dataclasses import asdict
@@ -55,11 +56,7 @@ class Start(NamedTuple):
     length_covariance: Array  # (12, 12) m^2
     bias_std: tuple[float, float, float] | None  # m; None: no bias states
     noise: StartNoise
-
-    @property
-    def standing(self) -> bool:
-        """Whether the posture was known, so that absolute angles are free of the camera's offsets."""
-        return self.bias_std is not None
+    standing: bool = False  # whether the posture was known, so that absolute angles are free of the camera's offsets
 
     def packed(self) -> State:
         """As JSON values, to the bit."""
@@ -68,6 +65,7 @@ class Start(NamedTuple):
             "arrays": [pack_array(array) for array in arrays],
             "bias_std": None if self.bias_std is None else list(self.bias_std),
             "noise": asdict(self.noise) | {"bias_std": list(self.noise.bias_std)},
+            "standing": self.standing,
         }
 
     @classmethod
@@ -77,7 +75,7 @@ class Start(NamedTuple):
         noise["bias_std"] = _triple(noise["bias_std"])
         bias_std = None if state["bias_std"] is None else _triple(state["bias_std"])
         q, q_std, lengths, covariance = (unpack_array(packed) for packed in state["arrays"])
-        return cls(q, q_std, lengths, covariance, bias_std, StartNoise(**noise))
+        return cls(q, q_std, lengths, covariance, bias_std, StartNoise(**noise), bool(state["standing"]))
 
 
 def _triple(values: list[float]) -> tuple[float, float, float]:
@@ -189,7 +187,7 @@ def standing_start(
     spread_of_lengths = noise.length_spread if told else UNKNOWN_STATURE_SPREAD
     return Start(
         q, np.concatenate([np.full(3, noise.position_std), spread]), lengths,
-        length_covariance(lengths, spread_of_lengths), noise.bias_std, noise,
+        length_covariance(lengths, spread_of_lengths), noise.bias_std, noise, standing=True,
     )  # fmt: skip
 
 
@@ -199,7 +197,7 @@ FITTED_LENGTH_SPREAD = 0.06
 
 
 def fitted_start(q: Array, lengths: Array, noise: StartNoise = START_NOISE) -> Start:
-    """From a posture q (25,) and lengths (12,) that were fitted to the first frames; no bias states."""
+    """From a posture q (25,) and lengths (12,) that were fitted to the first frames."""
     std = np.full(COORDINATES, FITTED_ANGLE_STD)
     std[:3] = noise.position_std
-    return Start(q.copy(), std, lengths.copy(), length_covariance(lengths, FITTED_LENGTH_SPREAD), None, noise)
+    return Start(q.copy(), std, lengths.copy(), length_covariance(lengths, FITTED_LENGTH_SPREAD), noise.bias_std, noise)

@@ -52,5 +52,6 @@ def advance(
         swapped = unswap(centres, state, work.expected, belief.swap_scale, belief.swap_most, belief.swap_share)
     fuse(x, P, biased, centres, state, share, body, belief, work)
     project(x, P, belief.wide_low, belief.wide_high, work.bounds)
-    estimate[:] = x
+    for k in range(x.size):
+        estimate[k] = x[k]
     return count, swapped, project(estimate, P, belief.low, belief.high, work.bounds)

@@ -42,8 +42,11 @@ def place_alone(q: Array, lengths: Array, body: Table, posed: Table) -> None:
 @compiled
 def differentiate(body: Record, pose: Record, H: Array) -> None:
     """H (45, 40): d(centre) / d[translations, angles, lengths] at a placed pose; three columns stay zero."""
-    H[:] = 0.0
     for m in range(body.carrier.size):
+        for i in range(3):
+            line = H[3 * m + i]
+            for k in range(line.size):
+                line[k] = 0.0
         x, y, z = pose.centre[m, 0], pose.centre[m, 1], pose.centre[m, 2]
         j = body.carrier[m]
         length, along, share = body.centre_length[m], body.centre_along[m], body.centre_share[m]

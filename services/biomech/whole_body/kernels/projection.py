@@ -57,6 +57,15 @@ def worst(x: Array, P: Array, count: int, low: Array, high: Array, bounds: Recor
 
 
 @compiled
+def some_turned(count: int, bounds: Record) -> bool:
+    """Whether one of the tried multipliers is not positive."""
+    turned = False
+    for i in range(count):
+        turned = turned or bounds.trial[i] <= 0.0
+    return turned
+
+
+@compiled
 def step_towards(count: int, bounds: Record) -> int:
     """Move the multipliers towards the trial as far as none turns negative; drop those that became zero."""
     m, trial = bounds.multiplier, bounds.trial
@@ -84,7 +93,7 @@ def project(x: Array, P: Array, low: Array, high: Array, bounds: Record) -> int:
         bounds.active[count], bounds.sign[count], bounds.multiplier[count] = b, side, 0.0
         count += 1
         solve(x, P, count, low, high, bounds)
-        while count > 0 and bounds.trial[:count].min() <= 0.0:
+        while some_turned(count, bounds):
             count = step_towards(count, bounds)
             solve(x, P, count, low, high, bounds)
         for i in range(count):

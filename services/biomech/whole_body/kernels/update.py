@@ -35,7 +35,8 @@ def fuse(
             work.used[count] = m
             count += 1
     work.in_use, work.squares, work.log_determinant = count, 0.0, 0.0
-    work.dx[:] = 0.0
+    for k in range(work.dx.size):
+        work.dx[k] = 0.0
     for a in range(0, count, 2):
         rows = take_centres(P, biased, a, min(count - a, 2), body, work)
         whiten(rows, P.shape[1], work)
@@ -148,7 +149,9 @@ def whiten(rows: int, M: int, work: Record) -> None:
             line[k] *= f
             dx[k] += g * line[k]
     for r in range(rows, GROUP):
-        work.W[r, :M] = 0.0
+        line = work.W[r]
+        for k in range(line.size):
+            line[k] = 0.0
 
 
 @compiled

@@ -13,7 +13,8 @@ def doubt_bones(centres: Array, state: Indices, body: Record, stretch: float, wo
     A length says so in every posture and without delay, where an innovation may also be a fast movement.
     """
     centre, doubt = work.pose.centre, work.doubt
-    doubt[:] = 1.0
+    for m in range(doubt.size):
+        doubt[m] = 1.0
     for m in range(centres.shape[0]):
         b = body.before[m]
         if b < 0 or state[m] == 0 or state[b] == 0 or stretch <= 0.0:
@@ -58,8 +59,9 @@ def expected_covariance(m: int, biased: bool, P: Array, body: Record, work: Reco
     """H P H' of one centre, (3, 3), left in `work.own`."""
     near, own, columns, moving = work.near, work.own, body.columns[m], body.moving[m]
     first = SEEN + 3 * m
-    own[:] = 0.0
     for i in range(3):
+        for k in range(3):
+            own[i, k] = 0.0
         line, row = near[i], P[i, :KINEMATIC]
         for k in range(line.size):
             line[k] = row[k]

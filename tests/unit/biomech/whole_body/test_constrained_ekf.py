@@ -206,3 +206,18 @@ def test_settling_keeps_the_posture_and_forgets_the_motion(person) -> None:
     assert (ekf.lengths == lengths).all()
     assert not ekf.rates.any()
     assert np.linalg.eigvalsh(ekf.P).min() > 0.0
+
+
+def test_what_was_is_told_better_a_little_later(person) -> None:
+    """In the light of three more frames the knee of a squat is known better than at once, and within its limits."""
+    q = person.squats(240)
+    at_once, later = [], []
+    for k, ekf in enumerate(run(WholeBodyEkf(person.start()), person, person.seen(q, 0.02))):
+        if k >= 33:
+            at_once.append(ekf.angles - q[k, 3:])
+            later.append(ekf.angles_before(3 * person.dt) - q[k - 3, 3:])
+    assert (ekf.angles_before(0.0) == ekf.angles).all()
+    knee = DOF["knee_flexion_right"]
+    error = [np.sqrt(np.mean(np.square([row[knee] for row in rows]))) for rows in (at_once, later)]
+    assert error[1] < 0.9 * error[0]
+    assert (ekf.angles_before(0.2) >= per_angle(LIMITS_DEG)[:, 0]).all()
