@@ -59,7 +59,7 @@ def _figures(name: str, tally: Tally) -> list[Row]:
             at_most(f"{name}: knee range, mean absolute error", degrees(mean_absolute(tally.knees)), "deg", 8.0)
         )
         rows.append(informative(f"{name}: knee ranges told", seen, "%", detail=True))
-    if tally.symmetries:
+    if tally.symmetries and name != NAMES[ONE_SIDED]:
         rows.append(at_most(f"{name}: right / left, mean absolute error", mean_absolute(tally.symmetries), "1", 0.1))
     if tally.partial:
         share = 100.0 * tally.partial_counted / tally.partial

@@ -42,7 +42,7 @@ class ExerciseParameters:
     """rad by which an angle may differ from where its velocity takes it; a camera makes more of them than a sensor, and
     they pass."""
 
-    legs_apart_share: float = 1.0
+    legs_apart_share: float = 1.3
     """share of a squat's range by which the difference of the knees may change within it. A walk changes it by three
     times the range of their mean; a person who spares one leg by half of it."""
     standing_share: float = 0.5
