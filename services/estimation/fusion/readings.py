@@ -11,6 +11,7 @@ from schemas.rhythm import Rhythm
 from schemas.vocabulary import BODY_MODELS
 from services.biomech.fusion.parameters import SHARED
 from services.biomech.fusion.shared_angles import Told, Turn
+from services.biomech.whole_body.observability import LARGEST_DEVIATION, OTHER_SHARE
 from services.flow.node import State, pack_array, unpack_array
 
 Array = NDArray[np.float64]
@@ -19,6 +20,9 @@ COLUMNS = {
     model: np.array([[dof.name for dof in dofs].index(name) for name in SHARED]) for model, dofs in BODY_MODELS.items()
 }
 """Model -> (11,) its columns of the shared angles."""
+
+SUREST = LARGEST_DEVIATION * OTHER_SHARE
+"""rad. A camera's angle may be shown with a larger deviation, but teaches nothing then."""
 
 
 class Reading(NamedTuple):
@@ -36,8 +40,9 @@ def readings(joints: JointState, rhythm: Rhythm | None = None) -> list[Reading]:
     valid = np.array(joints.valid)[columns]
     tables = (joints.position, joints.velocity, joints.position_std, joints.acceleration)
     position, velocity, std, acceleration = (np.array(table, dtype=np.float64)[:, columns] for table in tables)
+    sure = std <= SUREST if joints.model == "whole_body" else np.ones_like(std, dtype=np.bool_)
     return [
-        Reading(captured_ns, Told(position[k], velocity[k], std[k], valid), acceleration[k], _turn(rhythm, k))
+        Reading(captured_ns, Told(position[k], velocity[k], std[k], valid & sure[k]), acceleration[k], _turn(rhythm, k))
         for k, captured_ns in enumerate(joints.captured_ns)
     ]
 
