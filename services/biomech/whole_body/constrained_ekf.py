@@ -62,10 +62,12 @@ class FilterSettings:
     lengths_learnt_s: float = 5.0
     """s in view after which lengths are held. What still moves them then is the camera's systematic error, which more
     frames do not average out."""
+    biases_learnt_s: float = 5.0
+    """The same for the biases: what moves them then is what the filter makes of quick movement. [K]"""
 
 
 HELD = 1e-3
-"""What is left of the deviation of a length that is held."""
+"""What is left of the deviation of a length or bias that is held."""
 
 OURS = FilterSettings()
 
@@ -127,15 +129,20 @@ class WholeBodyEkf:
             self.x, self._kept, self.estimate, self.velocity, dt_s, share, self._centres, self._state,
             self.model.body, self._belief, self._work,
         )  # fmt: skip
-        self._learn_lengths(dt_s if count else 0.0)
+        self._learn_constants(dt_s if count else 0.0)
 
-    def _learn_lengths(self, dt_s: float) -> None:
+    def _learn_constants(self, dt_s: float) -> None:
         before, self.in_view_s = self.in_view_s, self.in_view_s + dt_s
         if before < self.settings.lengths_learnt_s <= self.in_view_s:
-            # D P D with D diagonal stays positive definite.
-            self.x[COORDINATES:SEEN] = self.estimate[COORDINATES:SEEN]
-            self._kept[COORDINATES:SEEN] *= HELD
-            self._kept[:, COORDINATES:SEEN] *= HELD
+            self._hold(slice(COORDINATES, SEEN))
+        if self.biased and before < self.settings.biases_learnt_s <= self.in_view_s:
+            self._hold(slice(SEEN, self.velocity))
+
+    def _hold(self, states: slice) -> None:
+        # D P D with D diagonal stays positive definite.
+        self.x[states] = self.estimate[states]
+        self._kept[states] *= HELD
+        self._kept[:, states] *= HELD
 
     @property
     def q(self) -> Array:
