@@ -13,6 +13,7 @@ from services.bus.loop import EventLoop
 from services.bus.publisher import LivePublisher, StreamPublisher
 from services.bus.receiver import Delivery
 from services.bus.replay import question_parameters
+from services.flow.catch_up import CatchUp
 from services.flow.checkpoints import ARCHIVE, HeldCheckpoints
 from services.flow.host import HostedNode
 from services.flow.message import DecodeError, Message, Stream, decode_payload
@@ -27,6 +28,8 @@ REPEAT_S = 5.0
 """Progress is told again when nothing changes, for those who came later or lost it."""
 LINGER_S = 60.0
 """Rings stay this long after the end, and after the last step of any reader, when no archive says it has all."""
+LONGEST_CATCH_UP_S = 20.0
+"""A stream that has not told its past by then is not waited for."""
 PATIENCE_S = 5.0
 """For a checkpoint, when the rings no longer have the beginning."""
 
@@ -105,6 +108,8 @@ class NodeSession:
         self._frozen_inputs = dict(host.inputs)
         self._told_at = 0.0
         self._told: Progress | None = None
+        self._opened_at = time.monotonic()
+        self._catch_up: CatchUp[Delivery] | None = CatchUp(host.node.streams, lambda each: each.envelope.captured_ns)
         self._publishers = {stream: self._publisher(stream) for stream in host.outputs}
         self._receivers = [
             loop.receive(host.session, stream, host.inputs.get(stream), self._take) for stream in host.node.streams
@@ -112,6 +117,7 @@ class NodeSession:
 
     def tick(self, now: float) -> None:
         """Tell progress and freeze, when it is time to."""
+        self._drain(now)
         self._tell_progress(now)
         if now - self._frozen_at >= CHECKPOINT_S or (self.host.ended and self._ended_at is None):
             self.freeze(now)
@@ -176,6 +182,24 @@ class NodeSession:
             publisher.close()
 
     def _take(self, delivery: Delivery) -> None:
+        if self._catch_up is None:
+            self._accept(delivery)
+            return
+        self._catch_up.add(delivery.stream, delivery)
+        self._drain(time.monotonic())
+
+    def _drain(self, now: float) -> None:
+        """Hand over what the streams brought of their past, until they are all in the present."""
+        if self._catch_up is None:
+            return
+        late = now - self._opened_at >= LONGEST_CATCH_UP_S
+        settled = [receiver.stream for receiver in self._receivers if late or receiver.is_settled]
+        for delivery in self._catch_up.ready(settled):
+            self._accept(delivery)
+        if self._catch_up.is_over(settled):
+            self._catch_up = None
+
+    def _accept(self, delivery: Delivery) -> None:
         if self.failed:
             return
         try:

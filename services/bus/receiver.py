@@ -78,6 +78,11 @@ class StreamReceiver:
         return self._inbox.position
 
     @property
+    def is_settled(self) -> bool:
+        """The past of the stream has been asked for and delivered."""
+        return self._held is None and self._repair.is_settled
+
+    @property
     def closed(self) -> bool:
         """No more deliveries come."""
         return self._closed

@@ -60,6 +60,12 @@ class Repair(Generic[Item]):
         self._heard_at = now
         self._silence = self._times.silence
 
+    @property
+    def is_settled(self) -> bool:
+        """Asked, answered, and nothing of the answer is missing."""
+        answered = self._begun and self._asked_at is None
+        return answered and self._newest <= self._place() and self._inbox.hole() is None
+
     def question(self, now: float) -> Question | None:
         """What to ask now; the caller then owes an `answered`."""
         if self._asked_at is not None:

@@ -30,6 +30,7 @@ WALK = "synthetic:walk?speed=1.2&seed=11&duration=24"
 KNEE = "synthetic:walk?speed=1.2&seed=12&duration=24&worn=1"
 TIMED_UP_AND_GO = "synthetic:tug?seed=4&stroll=4"
 SQUATS = "synthetic:squat?person=2&repetitions=4"
+BOTH = "synthetic:walk?speed=1.2&seed=13&duration=24&camera=1"
 SERVICES = ["archive", "estimation", "segmentation", "metrics", "ingest"]
 
 
@@ -136,6 +137,7 @@ def test_live_services_give_the_numbers_of_a_plain_loop(stack, played):
 KILLED = [
     *((KNEE, victim) for victim in ("estimation", "segmentation", "metrics", "archive")),
     *((WALK, victim) for victim in ("estimation", "archive")),
+    (BOTH, "estimation"),
     *((TIMED_UP_AND_GO, victim) for victim in ("segmentation", "metrics")),
     *((SQUATS, victim) for victim in ("estimation", "segmentation")),
 ]
@@ -143,7 +145,7 @@ KILLED = [
 
 @pytest.mark.parametrize(("spec", "victim"), KILLED)
 def test_nothing_is_lost_when_a_service_is_killed(stack, spec, victim):
-    """Two sensors of one leg, five of a walker, a task with phases, and a camera, each where it differs."""
+    """Two sensors of one leg, five of a walker, a task with phases, a camera, and both, each where it differs."""
     same_as_plain_loop(stack, stack.play(spec, 4.0, victim), spec)
 
 
