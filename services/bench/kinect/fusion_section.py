@@ -36,9 +36,9 @@ JOINTS = ("hip_flexion", "hip_adduction", "knee_flexion")
 NAMES = tuple(f"{joint}_{side}" for joint in JOINTS for side in ("right", "left"))
 ESTIMATORS = {"sensors alone": "rhythmic_ekf", "camera alone": "body_cekf", "both": "fusion"}
 NOTE = (
-    f"Fusion: seeds {SEEDS[0]} to {SEEDS[-1]} on a treadmill at {SPEEDS[0]} to {SPEEDS[-1]} m/s, the camera's noise that\n"
-    f"of the other sections; from {SETTLED_S:g} s on, root mean square over walkers. Growth: error in a loss of\n"
-    f"{LOSS_S:g} s less that of the {BEFORE_S:g} s before it, both fused. These sensors have no posture offset."
+    f"Fusion: seeds {SEEDS[0]} to {SEEDS[-1]} on a treadmill at {SPEEDS[0]} to {SPEEDS[-1]} m/s, the camera's noise\n"
+    f"that of the other sections; from {SETTLED_S:g} s on, root mean square over walkers. Growth: error in a loss\n"
+    f"of {LOSS_S:g} s less that of the {BEFORE_S:g} s before it, both fused. These sensors have no posture offset."
 )
 
 
