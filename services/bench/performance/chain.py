@@ -1,6 +1,6 @@
-"""What one five-sensor frame costs in the plain loop: each node, and the encoding and decoding between them.
+"""What one frame of five sensors or of a camera costs in the plain loop: each node, and the coding between them.
 
-Processor time is measured, in pieces of two seconds of walking, so that a busy machine disturbs it little.
+Processor time is measured, in pieces of a few seconds of movement, so that a busy machine disturbs it little.
 """
 
 import statistics
@@ -10,7 +10,7 @@ from collections.abc import Callable
 from pathlib import Path
 from typing import Any, TypeVar
 
-from schemas.signals import IMU
+from schemas.signals import IMU, SKELETON, Signal
 from services.bench.scoreboard import Row, Scoreboard, at_least, at_most, informative
 from services.cli.assembly import build_chain
 from services.flow.host import HostedNode
@@ -18,9 +18,12 @@ from services.flow.message import Message, decode_payload, encode_payload
 from services.ingest.source import iter_messages, open_source
 
 WALK = "synthetic:walk?speed=1.2&seed=3&duration=60"
-RATE_HZ = 100.0
-PIECE = 200
-"""Frames between two readings of the sums."""
+SQUATS = "synthetic:squat?person=3&repetitions=12"
+RATE_HZ, CAMERA_RATE_HZ = 100.0, 30.0
+PIECE_S = 2.0
+"""s of frames between two readings of the sums."""
+PATIENTS = 30
+"""Before cameras, on one core with the rest of the chain."""
 CODING = "encode and decode"
 TARGETS_US = {1: 120.0, 5: 80.0}
 """us per frame of estimation, by frames in a message."""
@@ -55,18 +58,18 @@ def _pass(hosts: list[HostedNode], message: Message, costs: Costs) -> None:
                 queue += costs.of(host.service, host.accept, received)
 
 
-def frame_costs_us(frames_per_message: int) -> dict[str, float]:
-    """Median us per frame of each node and of the coding, while walking."""
-    source = open_source(WALK, estimator="rhythmic_ekf")
+def frame_costs_us(spec: str, signal: Signal, rate_hz: float, frames_per_message: int) -> dict[str, float]:
+    """Median us per frame of each node and of the coding, while the person moves."""
+    source = open_source(spec)
     hosts = build_chain(source.describe()).hosts
     pieces: list[dict[str, float]] = []
     costs, frames = Costs(), 0
     for message in iter_messages(source, frames_per_message):
-        if message.stream.signal is not IMU:
+        if message.stream.signal is not signal:
             continue
         _pass(hosts, message, costs)
         frames += frames_per_message
-        if frames >= PIECE:
+        if frames >= PIECE_S * rate_hz:
             pieces.append({name: seconds / frames * 1e6 for name, seconds in costs.seconds.items()})
             costs, frames = Costs(), 0
     # The first third is standing and calibrating, with the compilation of what is not yet on disk.
@@ -79,7 +82,7 @@ def run(json_path: Path | None = None) -> Scoreboard:
     """One frame in a message, as at the lowest latency, and five."""
     rows: list[Row] = []
     for frames, target_us in TARGETS_US.items():
-        costs = frame_costs_us(frames)
+        costs = frame_costs_us(WALK, IMU, RATE_HZ, frames)
         total = sum(costs.values())
         group = f"{frames} frame{'s' if frames > 1 else ''} in a message"
         rows.append(at_most(f"{group}: estimation", costs.pop("estimation"), "us", target_us))
@@ -88,7 +91,18 @@ def run(json_path: Path | None = None) -> Scoreboard:
             informative(f"{group}: everything", total, "us"),
             at_least(f"{group}: faster than real time", 1e6 / RATE_HZ / total, "x", 20.0),
         ]
-    board = Scoreboard("chain", rows, "Per frame of five sensors at 100 Hz, one processor, no network.")
+    note = "Per frame of five sensors at 100 Hz or of a camera at 30 Hz, one processor, no network."
+    board = Scoreboard("chain", [*rows, *_camera_rows()], note)
     if json_path is not None:
         board.write_json(json_path)
     return board
+
+
+def _camera_rows() -> list[Row]:
+    costs = frame_costs_us(SQUATS, SKELETON, CAMERA_RATE_HZ, 1)
+    total = sum(costs.values())
+    return [
+        *(informative(f"camera: {name}", cost, "us") for name, cost in costs.items()),
+        informative("camera: everything", total, "us"),
+        at_least("camera: patients at 30 Hz on one core", 1e6 / CAMERA_RATE_HZ / total, "", PATIENTS),
+    ]
