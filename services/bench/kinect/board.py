@@ -70,20 +70,21 @@ and put right, and the fit of each frame. Everything comes from `ambula bench ki
 recordings alone, run times from this machine. Errors are those of joint angles in degrees."""
 
 
-def run(json_path: Path | None = None, subject: str | None = None, *, report: Path | None = None) -> Scoreboard:
-    """Score one of SECTIONS, or all; with `report` also write report.md and its charts into that folder.
+def run(json_path: Path | None = None, *subjects: str, report: Path | None = None) -> Scoreboard:
+    """Score some of SECTIONS, or all; with `report` also write report.md and its charts into that folder.
 
     Raises:
         ValueError: the section is not known.
-        MissingFile: the data of the one section asked for are not there; asked for all, its rows say so.
+        MissingFile: the data of a section that was asked for are not there; asked for all, its rows say so.
     """
-    if subject is not None and subject not in SECTIONS:
-        raise ValueError(f"kinect is measured on {', '.join(SECTIONS)}, not on {subject!r}")
-    names = WHOLE if subject is None else (subject,)
+    unknown = [subject for subject in subjects if subject not in SECTIONS]
+    if unknown:
+        raise ValueError(f"kinect is measured on {', '.join(SECTIONS)}, not on {', '.join(unknown)}")
+    names = subjects or WHOLE
     with Progress(transient=True) as progress:
         bar = progress.add_task("trials", total=sum(SECTIONS[name].steps for name in names))
-        sections = [_section(name, lambda: progress.advance(bar), skip=subject is None) for name in names]
-    title = f"kinect: {subject}" if subject else "kinect"
+        sections = [_section(name, lambda: progress.advance(bar), skip=not subjects) for name in names]
+    title = f"kinect: {', '.join(subjects)}" if subjects else "kinect"
     notes = dict.fromkeys(paragraph for section in sections for paragraph in section.paragraphs)
     rows = [row for section in sections for row in section.rows]
     board = Scoreboard(title, rows, "\n".join(notes), [grid for section in sections for grid in _grids(section)])
