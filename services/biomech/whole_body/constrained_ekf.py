@@ -62,12 +62,14 @@ class FilterSettings:
     lengths_learnt_s: float = 5.0
     """s in view after which lengths are held. What still moves them then is the camera's systematic error, which more
     frames do not average out."""
-    biases_learnt_s: float = 5.0
-    """The same for the biases: what moves them then is what the filter makes of quick movement. [K]"""
+    biases_learnt_s: float = 8.0
+    """The same for the biases: what moves them then is mostly what the filter makes of quick movement. [K]"""
 
 
 HELD = 1e-3
-"""What is left of the deviation of a length or bias that is held."""
+"""What is left of the deviation of a length that is held."""
+SLOWED = 0.1
+"""The same for biases. They go on being learnt, slowly: a start from a poor second is mended by and by."""
 
 OURS = FilterSettings()
 
@@ -134,15 +136,15 @@ class WholeBodyEkf:
     def _learn_constants(self, dt_s: float) -> None:
         before, self.in_view_s = self.in_view_s, self.in_view_s + dt_s
         if before < self.settings.lengths_learnt_s <= self.in_view_s:
-            self._hold(slice(COORDINATES, SEEN))
+            self._hold(slice(COORDINATES, SEEN), HELD)
         if self.biased and before < self.settings.biases_learnt_s <= self.in_view_s:
-            self._hold(slice(SEEN, self.velocity))
+            self._hold(slice(SEEN, self.velocity), SLOWED)
 
-    def _hold(self, states: slice) -> None:
+    def _hold(self, states: slice, share: float) -> None:
         # D P D with D diagonal stays positive definite.
         self.x[states] = self.estimate[states]
-        self._kept[states] *= HELD
-        self._kept[:, states] *= HELD
+        self._kept[states] *= share
+        self._kept[:, states] *= share
 
     @property
     def q(self) -> Array:

@@ -36,11 +36,13 @@ UNCALIBRATED = replace(
     process=replace(
         OURS.process, hip_flexion=2000.0, hip_adduction=30.0, knee=1500.0, clavicle=10.0, shoulder_rotation=20.0
     ),
+    biases_learnt_s=np.inf,
 )
 """For a start that is not standing: posture and lengths are those that fit a few frames, offsets and all.
 
 A wrong start turns what the camera gets wrong into fast legs, so the camera is believed less and legs are calmer: as
-calm as costs nothing on simulated people who start at the bottom of a squat (the tuning people).
+calm as costs nothing on simulated people who start at the bottom of a squat (the tuning people). Offsets stay free:
+only movement tells them there.
 """
 
 

@@ -71,6 +71,7 @@ def test_every_archived_stream_of_a_session_is_expected(description):
         "rhythm/estimation",
         "learned_rhythm/estimation",
         "segment_motion/estimation",
+        "joint_centres/estimation",
         "gait_event/segmentation",
         "stride/segmentation",
         "task_phase/segmentation",
