@@ -128,7 +128,7 @@ def _joint_rows(joint: str, whole: dict[str, list[Array]], lost: dict[str, list[
     rows.append(at_most(name, both, "deg", round(better, 2), better) if targeted else informative(name, both, "deg"))
     for source, pairs in lost.items():
         before, within = (rms([pair[i] for pair in pairs], joint) for i in (0, 1))
-        name = f"fusion, {label}: growth while {'the camera' if source == 'camera' else 'all sensors'} is away"
+        name = f"fusion, {label}: growth without {'the camera' if source == 'camera' else 'sensors'}"
         grown = within - before
         rows.append(at_most(name, grown, "deg", 2.0, before) if targeted else informative(name, grown, "deg", before))
     return rows
