@@ -102,7 +102,8 @@ class Scoreboard:
 def _drawn(grid: Grid) -> Table:
     table = Table(title=grid.caption)
     for i, heading in enumerate(grid.header):
-        table.add_column(heading, justify="right" if i else "left", no_wrap=i == 0)
+        # Numbers are folded rather than cut on a narrow terminal.
+        table.add_column(heading, justify="right" if i else "left", overflow="fold")
     for row in grid.rows:
         table.add_row(*row)
     return table
