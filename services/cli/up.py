@@ -26,7 +26,7 @@ def run_stack(*, demo: bool, seconds: float | None) -> int:
     """Start, serve until Ctrl-C (or for so many seconds), stop in order. Exit code."""
     settings = BusSettings()
     with Supervisor(SERVICES, settings) as stack:
-        out.print("starting the services (the first start compiles the filters: up to a minute) ...")
+        out.print("starting the services (the first start compiles the filters: up to two minutes) ...")
         stack.wait_until_ready(timeout_s=180)
         out.print(f"\n  Open  [bold]{GatewaySettings().url}[/bold]  in a browser. Ctrl-C stops everything.\n")
         if demo:

@@ -11,23 +11,31 @@ from services.ingest.parameters import PARAMETERS, IngestParameters
 
 @dataclass
 class Batcher:
-    """Joins `ticks` consecutive messages of each stream; `ticks` may change at any time."""
+    """Joins `ticks` consecutive messages of each stream, fewer where they would span more than `longest_ns`.
+
+    Both may change at any time.
+    """
 
     ticks: int = 1
-    _held: dict[Stream, tuple[int, SourceMessage]] = field(default_factory=dict)
+    longest_ns: int | None = None
+    _held: dict[Stream, tuple[int, int, SourceMessage]] = field(default_factory=dict)
 
     def add(self, message: SourceMessage) -> list[SourceMessage]:
         """The next message of its stream; what is now complete."""
-        count, so_far = self._held.pop(message.stream, (0, None))
+        count, first_ns, so_far = self._held.pop(message.stream, (0, message.captured_ns, None))
         message = message if so_far is None else joined(so_far, message)
-        if count + 1 >= self.ticks:
+        if count + 1 >= self.ticks or self._is_long(count, message.captured_ns - first_ns):
             return [message]
-        self._held[message.stream] = (count + 1, message)
+        self._held[message.stream] = (count + 1, first_ns, message)
         return []
+
+    def _is_long(self, periods: int, span_ns: int) -> bool:
+        """Whether one more would be too many."""
+        return self.longest_ns is not None and periods > 0 and span_ns + span_ns // periods > self.longest_ns
 
     def flush(self) -> list[SourceMessage]:
         """What is incomplete, at the end."""
-        rest = [message for _, message in self._held.values()]
+        rest = [message for _, _, message in self._held.values()]
         self._held.clear()
         return rest
 

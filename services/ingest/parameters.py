@@ -11,6 +11,7 @@ class IngestParameters:
     most_per_pump: int = 200  # messages of one session in one look, so that none starves the others
     chunk: int = 200  # messages made at once by a reading thread; 1 s of a 100 Hz hub with its truth
     most_ticks: int = 5  # ticks in one message at most: 50 ms at 100 Hz, the budget's floor for a full ward
+    longest_message_s: float = 0.05  # s that one message may span when it has grown; a camera is slower than a hub
     lag_behind_s: float = 0.1  # later than this is behind
     lag_in_time_s: float = 0.03  # earlier than this is in time
     grow_after_s: float = 1.0  # of being behind, before messages grow by one tick

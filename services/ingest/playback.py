@@ -193,6 +193,8 @@ class Playback:
         lag_s = max(0.0, (limit_ns - first.captured_ns) * 1e-9) if first is not None else 0.0
         if self._pace.paced:
             self._batcher.ticks = max(self._least_ticks, self._governor.observe(now_s, lag_s))
+            grown = self._batcher.ticks > self._least_ticks
+            self._batcher.longest_ns = round(self._parameters.longest_message_s * 1e9) if grown else None
         for _ in range(self._parameters.most_per_pump):
             message = self._feed.peek()
             if message is None or message.captured_ns > limit_ns:

@@ -10,7 +10,7 @@ from services.biomech.whole_body.kernels.tables import COORDINATES
 from services.biomech.whole_body.model import CENTRE_NAMES, LENGTH_NAMES
 from services.biomech.whole_body.model import MODEL as BODY
 from services.biomech.whole_body.parameters import MEAN_STATURE, lengths_of
-from services.estimation.body.screen import with_directions
+from services.estimation.body.screen import RELATIVE, STAND, with_directions
 from services.estimation.fusion.fuser import ABSENT_NS, MODEL
 from services.estimation.live_pose import Pace
 from services.estimation.parameters import EstimationParameters
@@ -88,7 +88,9 @@ class FusedPicture:
     def _completed(self, pose: LivePose) -> LivePose:
         """With the sensors and cameras of both, and what either has to say."""
         both = [self._heard[source] for source in sorted(self._heard)]
-        said = [each.message for each in both if each.message]
+        # The zero is the sensors' once they are calibrated, so nobody has to stand for the camera.
+        moot = (STAND, RELATIVE) if self._are_sensors_calibrated() else ()
+        said = [each.message for each in both if each.message and each.message not in moot]
         notices = [each.notice for each in both if each.notice]
         cadences = [each.cadence_per_min for each in both if each.cadence_per_min is not None]
         return pose.model_copy(
@@ -100,6 +102,10 @@ class FusedPicture:
                 "cadence_per_min": cadences[-1] if cadences else None,
             }
         )
+
+    def _are_sensors_calibrated(self) -> bool:
+        inertial = self._heard.get("inertial")
+        return inertial is not None and inertial.phase == "estimating"
 
     def snapshot(self) -> State:
         """Everything that changes."""

@@ -1,4 +1,4 @@
-"""Compile what runs per sample before the first sample comes: with an empty cache it takes half a minute."""
+"""Compile what runs per sample before the first sample comes: with an empty cache it takes about a minute."""
 
 import numpy as np
 

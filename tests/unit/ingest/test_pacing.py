@@ -115,3 +115,18 @@ def samples(messages):
         for time, rate, force in zip(sensor.captured_ns, sensor.angular_velocity, sensor.specific_force, strict=True)
         if sensor is message.payload.sensors[0]
     ]
+
+
+def test_messages_that_grow_stay_short_in_time_whatever_the_rate():
+    source = open_source("synthetic:walk?camera=1&duration=8&seed=2")
+    batcher = Batcher(ticks=5, longest_ns=50_000_000)
+    spans: dict[str, set[int]] = {}
+    for message in source.messages():
+        for batch in batcher.add(message):
+            frames = getattr(batch.payload, "captured_ns", None)
+            if frames is None:
+                frames = batch.payload.sensors[0].captured_ns
+            spans.setdefault(batch.stream.signal.name, set()).add(len(frames))
+    assert spans["imu"] == {5}
+    # Two frames that follow each other, 33 ms apart; three never, not even around a lost one.
+    assert max(spans["skeleton"]) == 2
