@@ -9,7 +9,7 @@ from schemas.kinematics import JointState
 from schemas.rhythm import Rhythm
 from schemas.vocabulary import BODY_MODELS, Segment
 from services.biomech.fusion.parameters import FusionParameters
-from services.biomech.fusion.shared_angles import SharedAngles
+from services.biomech.fusion.shared_angles import SharedAngles, Told
 from services.estimation.fusion.blend import Blend, Leading
 from services.estimation.fusion.readings import COLUMNS, History, Reading, carried, readings
 from services.flow.node import State, pack_array, unpack_array
@@ -99,8 +99,7 @@ class Fuser:
 
     def _row(self, captured_ns: int, inertial: Reading | None) -> tuple[int, Array, NDArray[np.bool_]]:
         """(5, 24) tables and (24,) validity at one instant."""
-        camera = None if self._is_away(self._camera, captured_ns) else self._camera.newest
-        by_camera = None if camera is None else self._shared.from_camera(*carried(camera, captured_ns))
+        by_camera = None if inertial is not None and inertial.told.valid.all() else self._by_camera(captured_ns)
         by_inertial = None if inertial is None else self._shared.from_inertial(inertial.told)
         told = self._blend.take(captured_ns, by_inertial, by_camera)
         tables, valid = self._others(captured_ns)
@@ -110,6 +109,13 @@ class Fuser:
             tables[2, PLACES[led]] = inertial.acceleration[led]
         self._last_ns = captured_ns
         return captured_ns, tables, valid
+
+    def _by_camera(self, captured_ns: int) -> Told | None:
+        """What the camera says at a time, through its manner; None while it is away."""
+        camera = self._camera.newest
+        if camera is None or self._is_away(self._camera, captured_ns):
+            return None
+        return self._shared.from_camera(*carried(camera, captured_ns))
 
     def _others(self, captured_ns: int) -> tuple[Array, NDArray[np.bool_]]:
         """What the camera alone tells, carried on to a time; not valid when it is away."""
