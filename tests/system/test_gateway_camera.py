@@ -25,6 +25,11 @@ def site(floor):
     pages.end_all(floor.url)
 
 
+def reasons(page) -> str:
+    unseen = page.find_elements(By.CSS_SELECTOR, ".angles td.unseen-angle")
+    return " ".join(each.get_attribute("title") or "" for each in unseen)
+
+
 SQUATS = "synthetic:squat?person=2&noise=0.3&repetitions=200"
 
 
@@ -44,8 +49,8 @@ def test_squats_before_a_camera_are_seen_counted_and_reported_on_both_sides(site
     first = page.find_element(By.CSS_SELECTOR, ".stage canvas").screenshot_as_base64
     wait(page, lambda: page.find_element(By.CSS_SELECTOR, ".stage canvas").screenshot_as_base64 != first, "it moves")
     seen(page, ".angles td", 6, "the angles change")
-    hidden = wait(page, lambda: page.find_elements(By.CSS_SELECTOR, ".angles td.unseen-angle"), "straight knees")[0]
-    assert "knee is bent" in wait(page, lambda: hidden.get_attribute("title"), "it says why")
+    # In the first seconds every angle is unseen, for another reason than straight knees.
+    wait(page, lambda: "knee is bent" in reasons(page), "straight knees hide the rotation, and it says why")
     wait(page, lambda: int(text(page, "output.count")) >= 3, "squats are counted")
     wait(page, lambda: all("°" in each for each in shown(page, ".side-bar b")), "both knees are compared")
     keep(page, "squat")
