@@ -5,6 +5,7 @@ from typing import Any, Literal, Self
 
 from pydantic import Field, model_validator
 
+from schemas.conditions import UNSAID, Conditions
 from schemas.payload import Payload, Vector3
 from schemas.rhythm import KnownRhythm
 from schemas.vocabulary import CameraKind, Segment, SkeletonJoint, Task
@@ -98,7 +99,10 @@ class SessionDescription(Payload):
     origin: Literal["recording", "archive", "synthetic", "device"]
     protocol: str
     task: Task = Field(description="what the person is asked to do")
-    walkway_m: float | None = Field(gt=0, le=100, description="m from start to turning point of a timed test")
+    walkway_m: float | None = Field(
+        gt=0, le=100, description="m from start to turning point of a timed test, or to its end where nobody turns"
+    )
+    conditions: Conditions
     estimator: str = Field(description="a name of vocabulary.ESTIMATORS")
     walk_path: WalkPath = Field(description="turning: anywhere; straight: treadmill, in place, corridor without a turn")
     hubs: list[HubDescription]
@@ -121,6 +125,7 @@ class SessionDescription(Payload):
             "walk_path": "turning",
             "task": Task.WALK,
             "walkway_m": None,
+            "conditions": UNSAID,
             "cameras": [],
         }
         return {**before, **fields} if isinstance(fields, dict) else fields

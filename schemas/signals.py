@@ -11,6 +11,7 @@ from schemas.imu import ImuBatch, ReferenceBatch
 from schemas.kinematics import Calibration, JointCentres, JointState, LivePose, SegmentMotion
 from schemas.metrics import SessionMetrics
 from schemas.payload import Payload
+from schemas.quality import DataQuality
 from schemas.rhythm import LearnedRhythm, Rhythm
 from schemas.session import SessionDescription
 from schemas.skeleton import SkeletonBatch
@@ -72,6 +73,10 @@ JOINT_CENTRES = Signal(
     "joint_centres", JointCentres, "estimation", Quality.LOSSLESS, "derived", 30.0, "joint centres in the room, of a "
     "body that a camera sees",
 )  # fmt: skip
+DATA_QUALITY = Signal(
+    "data_quality", DataQuality, "estimation", Quality.LOSSLESS, "derived", None, "what the sensors told and what of "
+    "it was used, so far",
+)  # fmt: skip
 LIVE_POSE = Signal("live_pose", LivePose, "estimation", Quality.LIVE, None, 25.0, "the skeleton on the screen")
 GAIT_EVENT = Signal(
     "gait_event", GaitEvent, "segmentation", Quality.LOSSLESS, "derived", None, "initial contact and toe-off"
@@ -95,7 +100,7 @@ PROGRESS = Signal("progress", Progress, "every consumer", Quality.LIVE, None, 10
 
 SIGNALS: tuple[Signal, ...] = (
     IMU, SKELETON, REFERENCE, SESSION, CALIBRATION, JOINT_STATE, RHYTHM, LEARNED_RHYTHM, SEGMENT_MOTION,
-    JOINT_CENTRES, LIVE_POSE,
+    JOINT_CENTRES, DATA_QUALITY, LIVE_POSE,
     GAIT_EVENT, STRIDE, TASK_PHASE, REPETITION, METRICS, GAP, HEALTH, CHECKPOINT, PROGRESS,
 )  # fmt: skip
 BY_NAME: dict[str, Signal] = {signal.name: signal for signal in SIGNALS}

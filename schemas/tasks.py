@@ -27,12 +27,15 @@ class TaskPhase(Payload):
         ge=0, description="rad/s, of the thighs' inclination, in rising or sitting"
     )
     steps: int | None = Field(ge=0, description="number of steps of both legs; null unless both shanks are seen")
+    distance_m: float | None = Field(ge=0, description="m walked in it; null where it was not measured")
+    distance_std_m: float | None = Field(ge=0, description="m, one standard deviation")
 
     @model_validator(mode="before")
     @classmethod
     def _of_an_older_writer(cls, fields: Any) -> Any:
-        """Earlier ones told the times alone."""
-        unknown = {"largest_turn_rate": None, "largest_thigh_rate": None, "steps": None}
+        """Earlier ones told the times alone, then no distances."""
+        names = ("largest_turn_rate", "largest_thigh_rate", "steps", "distance_m", "distance_std_m")
+        unknown = dict.fromkeys(names)
         return {**unknown, **fields} if isinstance(fields, dict) else fields
 
 

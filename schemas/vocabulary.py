@@ -56,6 +56,9 @@ class Task(StrEnum):
 
     WALK = "walk"
     TIMED_UP_AND_GO = "timed_up_and_go"
+    SIX_MINUTE_WALK = "six_minute_walk"
+    TEN_METRE_WALK = "ten_metre_walk"
+    MARCHING = "marching"
     KNEE_FLEXION = "knee_flexion"
     SQUAT = "squat"
     STEPPING = "stepping"
@@ -64,13 +67,33 @@ class Task(StrEnum):
 
 
 class TaskPhaseKind(StrEnum):
-    """Parts of a timed up and go, in the order in which they are done."""
+    """Parts of timed tests; `TASK_PHASES` says of which."""
 
     SIT_TO_STAND = "sit_to_stand"
     WALK_OUT = "walk_out"
     TURN = "turn"
     WALK_BACK = "walk_back"
     TURN_TO_SIT = "turn_to_sit"
+    WALK = "walk"
+    REST = "rest"
+    RUN_UP = "run_up"
+    TIMED_ZONE = "timed_zone"
+    RUN_OUT = "run_out"
+
+
+TASK_PHASES: dict[Task, tuple[TaskPhaseKind, ...]] = {
+    Task.TIMED_UP_AND_GO: (
+        TaskPhaseKind.SIT_TO_STAND,
+        TaskPhaseKind.WALK_OUT,
+        TaskPhaseKind.TURN,
+        TaskPhaseKind.WALK_BACK,
+        TaskPhaseKind.TURN_TO_SIT,
+    ),
+    Task.SIX_MINUTE_WALK: (TaskPhaseKind.WALK, TaskPhaseKind.TURN, TaskPhaseKind.REST),
+    Task.TEN_METRE_WALK: (TaskPhaseKind.RUN_UP, TaskPhaseKind.TIMED_ZONE, TaskPhaseKind.RUN_OUT),
+}
+"""Parts of each timed test. Those of a timed up and go and of a ten-metre walk in the order in which they are done;
+those of a six-minute walk follow each other as the person likes."""
 
 
 class Misplacement(StrEnum):

@@ -44,6 +44,7 @@ def start_session(
         "known_rhythms": None if known is None else [each.model_dump(mode="json") for each in known],
         "task": choices.task,
         "walkway_m": choices.walkway_m,
+        "conditions": None if choices.conditions is None else choices.conditions.model_dump(mode="json"),
         "session": None,
     }
     replies = bus.ask(command_key(bus.settings.site, "ingest", "start"), body=json.dumps(order).encode(), timeout_s=30)

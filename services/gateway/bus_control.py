@@ -34,6 +34,7 @@ class BusControl:
             else [known.model_dump(mode="json") for known in request.known_rhythms],
             "task": request.task,
             "walkway_m": request.walkway_m,
+            "conditions": None if request.conditions is None else request.conditions.model_dump(mode="json"),
         }
         try:
             return SessionDescription.model_validate(self._order("start", order, START_TIMEOUT_S))

@@ -3,6 +3,7 @@
 from dataclasses import dataclass
 from typing import Literal, Protocol
 
+from schemas.conditions import Conditions
 from schemas.rhythm import KnownRhythm
 from schemas.session import SessionDescription, WalkPath
 from schemas.vocabulary import CAMERA_ESTIMATORS, FUSION_ESTIMATORS, KNEE_ESTIMATORS, Task
@@ -20,7 +21,7 @@ class ControlRefused(RuntimeError):
 class StartRequest:
     """A session to be started. `speed` None plays as fast as the services follow.
 
-    `estimator`, `walk_path`, `known_rhythms`, `task` and `walkway_m` None are what the source says.
+    `estimator`, `walk_path`, `known_rhythms`, `task`, `walkway_m` and `conditions` None are what the source says.
     """
 
     session: str
@@ -31,6 +32,7 @@ class StartRequest:
     known_rhythms: list[KnownRhythm] | None
     task: Task | None
     walkway_m: float | None
+    conditions: Conditions | None
 
 
 Worn = Literal["lower_body", "knee", "camera", "camera_and_sensors"]

@@ -1,9 +1,9 @@
 """The tables of the gateway: an index over the archive, and the only place where a session meets a patient."""
 
-from datetime import UTC, datetime
+from datetime import UTC, date, datetime
 from typing import Any
 
-from sqlalchemy import JSON, DateTime, Dialect, Double, ForeignKey, Integer, String, TypeDecorator
+from sqlalchemy import JSON, Date, DateTime, Dialect, Double, ForeignKey, Integer, String, TypeDecorator
 from sqlalchemy.orm import DeclarativeBase, Mapped, mapped_column, relationship
 
 
@@ -33,6 +33,9 @@ class PatientRow(Base):
 
     code: Mapped[str] = mapped_column(String(16), primary_key=True)
     year_of_birth: Mapped[int | None] = mapped_column(Integer)
+    sex: Mapped[str | None] = mapped_column(String(16))
+    population: Mapped[str | None] = mapped_column(String(32))
+    paretic_side: Mapped[str | None] = mapped_column(String(8))
     created: Mapped[datetime] = mapped_column(UtcTime)
 
 
@@ -56,6 +59,7 @@ class SessionRow(Base):
     source: Mapped[str | None] = mapped_column(String(300))
     task: Mapped[str | None] = mapped_column(String(32))
     walkway_m: Mapped[float | None] = mapped_column(Double)
+    description: Mapped[dict[str, Any] | None] = mapped_column(JSON)
     metrics: Mapped["MetricsRow | None"] = relationship(lazy="selectin")
     calibration: Mapped["CalibrationRow | None"] = relationship(lazy="selectin")
 
@@ -68,6 +72,19 @@ class MetricsRow(Base):
     session_id: Mapped[str] = mapped_column(ForeignKey("session.id", ondelete="CASCADE"), primary_key=True)
     final: Mapped[bool]
     received: Mapped[datetime] = mapped_column(UtcTime)
+    software: Mapped[str] = mapped_column(String(100))
+    body: Mapped[dict[str, Any]] = mapped_column(JSON)
+
+
+class FormerMetricsRow(Base):
+    """Final metrics of a session as another software version computed them, replaced since by `ambula reprocess`."""
+
+    __tablename__ = "session_former_metrics"
+
+    session_id: Mapped[str] = mapped_column(ForeignKey("session.id", ondelete="CASCADE"), primary_key=True)
+    software: Mapped[str] = mapped_column(String(100), primary_key=True)
+    received: Mapped[datetime] = mapped_column(UtcTime)
+    replaced: Mapped[datetime] = mapped_column(UtcTime)
     body: Mapped[dict[str, Any]] = mapped_column(JSON)
 
 
@@ -89,3 +106,25 @@ class RhythmRow(Base):
     session_id: Mapped[str] = mapped_column(ForeignKey("session.id", ondelete="CASCADE"), primary_key=True)
     received: Mapped[datetime] = mapped_column(UtcTime)
     body: Mapped[dict[str, Any]] = mapped_column(JSON)
+
+
+class BaselineRow(Base):
+    """The visit a patient's progress counts from, with the thresholds that were chosen then and stay."""
+
+    __tablename__ = "patient_baseline"
+
+    patient_code: Mapped[str] = mapped_column(ForeignKey("patient.code", ondelete="CASCADE"), primary_key=True)
+    session_id: Mapped[str] = mapped_column(ForeignKey("session.id", ondelete="CASCADE"))
+    frozen: Mapped[datetime] = mapped_column(UtcTime)
+    body: Mapped[dict[str, Any]] = mapped_column(JSON)
+
+
+class TreatmentRow(Base):
+    """Something that was done for the patient, to be seen beside the progress."""
+
+    __tablename__ = "patient_treatment"
+
+    id: Mapped[int] = mapped_column(Integer, primary_key=True, autoincrement=True)
+    patient_code: Mapped[str] = mapped_column(ForeignKey("patient.code", ondelete="CASCADE"), index=True)
+    on: Mapped[date] = mapped_column("on_date", Date)
+    what: Mapped[str] = mapped_column(String(32))

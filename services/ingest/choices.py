@@ -3,6 +3,7 @@
 from dataclasses import dataclass
 from typing import Any
 
+from schemas.conditions import Conditions
 from schemas.rhythm import KnownRhythm
 from schemas.session import SessionDescription, WalkPath
 from schemas.vocabulary import (
@@ -28,6 +29,7 @@ class Choices:
     known_rhythms: tuple[KnownRhythm, ...] | None = None
     task: Task | None = None
     walkway_m: float | None = None
+    conditions: Conditions | None = None
 
     def __post_init__(self) -> None:
         if self.estimator is not None and self.estimator not in ESTIMATORS:
@@ -46,6 +48,7 @@ class Choices:
             "known_rhythms": None if self.known_rhythms is None else list(self.known_rhythms),
             "task": self.task,
             "walkway_m": self.walkway_m,
+            "conditions": self.conditions,
         }
         if self.estimator is not None:
             lacking = missing_source(self.estimator, hubs=bool(description.hubs), cameras=bool(description.cameras))

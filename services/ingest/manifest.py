@@ -7,6 +7,7 @@ from typing import Annotated
 
 from pydantic import Field, ValidationError
 
+from schemas.conditions import UNSAID, Conditions
 from schemas.session import WalkPath
 from schemas.vocabulary import ESTIMATORS, KNEE_ESTIMATORS, Segment, Task
 from services.biomech.event_sources import whole_legs
@@ -43,6 +44,7 @@ class Manifest(Entry):
     protocol: str = ""
     task: Task = Task.WALK
     walkway_m: Annotated[float, Field(gt=0, le=100)] | None = None
+    conditions: Conditions = UNSAID
     estimator: str | None = None
     walk_path: WalkPath = "turning"
     data: str = "."

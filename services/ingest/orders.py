@@ -5,6 +5,7 @@ from typing import Annotated, TypeVar
 
 from pydantic import BaseModel, ConfigDict, Field, ValidationError
 
+from schemas.conditions import Conditions
 from schemas.rhythm import KnownRhythm
 from schemas.session import WalkPath
 from schemas.vocabulary import Task
@@ -32,6 +33,7 @@ class StartOrder(Order):
     known_rhythms: list[KnownRhythm] | None = Field(default=None, max_length=3, description="null: as recorded")
     task: Task | None = None
     walkway_m: float | None = Field(default=None, description="m from start to turning point of a timed test")
+    conditions: Conditions | None = Field(default=None, description="null: as the source says")
     session: str | None = None
     ticks: Annotated[int, Field(ge=1, le=5)] = 1
 
@@ -39,7 +41,7 @@ class StartOrder(Order):
     def choices(self) -> Choices:
         """What the operator chose. Raises InvalidOption."""
         known = None if self.known_rhythms is None else tuple(self.known_rhythms)
-        return Choices(self.estimator, self.walk_path, known, self.task, self.walkway_m)
+        return Choices(self.estimator, self.walk_path, known, self.task, self.walkway_m, self.conditions)
 
 
 class MarkOrder(Order):

@@ -69,6 +69,7 @@ class Recording:
             protocol=manifest.protocol,
             task=manifest.task,
             walkway_m=manifest.walkway_m,
+            conditions=manifest.conditions,
             estimator=manifest.chosen_estimator,
             walk_path=manifest.walk_path,
             hubs=[

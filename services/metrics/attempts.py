@@ -5,7 +5,7 @@ from collections.abc import Callable
 
 from schemas.metrics import Metric
 from schemas.tasks import TaskPhase
-from schemas.vocabulary import TaskPhaseKind
+from schemas.vocabulary import TASK_PHASES, Task, TaskPhaseKind
 from services.flow.node import State
 from services.metrics import summary
 from services.metrics.definitions import Definition
@@ -13,6 +13,7 @@ from services.metrics.moments import Moments
 from services.metrics.parameters import MetricsParameters
 from services.metrics.tug_definitions import TUG_ABORTED, TUG_COMPLETED, TUG_MEANS, Attempt, Measured
 
+PARTS = TASK_PHASES[Task.TIMED_UP_AND_GO]
 NO_ATTEMPT = "no completed attempt"
 NOT_OBSERVED = "not observed in any completed attempt"
 
@@ -40,7 +41,7 @@ class AttemptTotals:
         self._attempt[phase.phase] = phase
         if phase.end_std_s is None:
             self._open = False
-        elif phase.phase is TaskPhaseKind.TURN_TO_SIT and len(self._attempt) == len(TaskPhaseKind):
+        elif phase.phase is TaskPhaseKind.TURN_TO_SIT and len(self._attempt) == len(PARTS):
             self._complete(self._attempt)
         return True
 
@@ -54,7 +55,7 @@ class AttemptTotals:
         ]
 
     def _list(self, phase: TaskPhase) -> None:
-        for i in range(len(self.phases) - 1, max(-1, len(self.phases) - len(TaskPhaseKind) - 1), -1):
+        for i in range(len(self.phases) - 1, max(-1, len(self.phases) - len(PARTS) - 1), -1):
             if (self.phases[i].attempt, self.phases[i].phase) == (phase.attempt, phase.phase):
                 self.phases[i] = phase
                 return

@@ -2,7 +2,7 @@
 
 from schemas.gait import Stride
 from schemas.health import Rejection
-from schemas.metrics import SessionMetrics
+from schemas.metrics import Metric, SessionMetrics
 from schemas.rhythm import LearnedRhythm
 from schemas.session import SessionDescription
 from schemas.signals import LEARNED_RHYTHM, METRICS, REPETITION, STRIDE, TASK_PHASE, Signal
@@ -11,6 +11,7 @@ from schemas.vocabulary import Segment, Side, Task
 from services.biomech.event_sources import worn_segments
 from services.flow.message import Message, Output, Stream
 from services.flow.node import Node, State
+from services.flow.software import SOFTWARE
 from services.metrics.attempts import AttemptTotals
 from services.metrics.exercises import SIDES_OF, ExerciseTotals
 from services.metrics.parameters import MetricsParameters
@@ -80,9 +81,7 @@ class MetricsNode:
         self._repetitions.add(repetition)
         self._repeated_ns = max(self._repeated_ns, captured_ns)
         metrics = self._repetitions.metrics()
-        payload = SessionMetrics(
-            captured_ns=self._repeated_ns, final=False, metrics=metrics, curves=[], phases=[], repetitions=[]
-        )
+        payload = _so_far(self._repeated_ns, metrics, [])
         return [Output(METRICS, self._repeated_ns, payload)]
 
     def _take_phase(self, phase: TaskPhase, captured_ns: int, attempts: AttemptTotals) -> list[Output]:
@@ -90,9 +89,7 @@ class MetricsNode:
         if not attempts.add(phase):
             return []
         metrics, phases = attempts.metrics(final=False), list(attempts.phases)
-        payload = SessionMetrics(
-            captured_ns=self._tested_ns, final=False, metrics=metrics, curves=[], phases=phases, repetitions=[]
-        )
+        payload = _so_far(self._tested_ns, metrics, phases)
         return [Output(METRICS, self._tested_ns, payload)]
 
     def finish(self) -> list[Output]:
@@ -104,6 +101,7 @@ class MetricsNode:
         payload = SessionMetrics(
             captured_ns=captured_ns,
             final=final,
+            software=SOFTWARE,
             metrics=[
                 *self._repetitions.metrics(),
                 *([] if attempts is None else attempts.metrics(final=final)),
@@ -111,6 +109,8 @@ class MetricsNode:
                 *(rhythm_metrics(self._learned if final else None, self._known, final=final) if self._walks else []),
             ],
             curves=self._totals.curves(self._parameters),
+            sides=[],
+            quality=None,
             phases=[] if attempts is None else list(attempts.phases),
             repetitions=self._repetitions.first if final else [],
         )
@@ -144,6 +144,21 @@ class MetricsNode:
             self._attempts.restore(state["attempts"])
         learned = state["learned"]
         self._learned = None if learned is None else LearnedRhythm.model_validate(learned)
+
+
+def _so_far(captured_ns: int, metrics: list[Metric], phases: list[TaskPhase]) -> SessionMetrics:
+    """Of a task alone, while it goes on."""
+    return SessionMetrics(
+        captured_ns=captured_ns,
+        final=False,
+        software=SOFTWARE,
+        metrics=metrics,
+        curves=[],
+        sides=[],
+        quality=None,
+        phases=phases,
+        repetitions=[],
+    )
 
 
 def _repetitions(description: SessionDescription, parameters: MetricsParameters) -> RepetitionTotals | ExerciseTotals:

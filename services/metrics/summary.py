@@ -2,7 +2,7 @@
 
 import math
 
-from schemas.metrics import MeanCurve, Metric
+from schemas.metrics import MeanCurve, Metric, TrustGrade
 from services.metrics.definitions import Definition
 from services.metrics.moments import Moments
 
@@ -16,7 +16,11 @@ def withheld(definition: Definition, side: str | None, strides: int, because: st
         value=None,
         spread=None,
         mean_std=None,
+        low=None,
+        high=None,
         strides=strides,
+        grade=TrustGrade.WITHHELD,
+        doubts=[],
         withheld_because=because,
     )
 
@@ -32,7 +36,11 @@ def shown(
         value=value,
         spread=spread,
         mean_std=mean_std,
+        low=None,
+        high=None,
         strides=strides,
+        grade=TrustGrade.FAIR,
+        doubts=[],
         withheld_because=None,
     )
 

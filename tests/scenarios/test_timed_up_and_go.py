@@ -6,7 +6,7 @@ import pytest
 
 from schemas.metrics import SessionMetrics
 from schemas.tasks import TaskPhase
-from schemas.vocabulary import TaskPhaseKind
+from schemas.vocabulary import TASK_PHASES, Task, TaskPhaseKind
 from services.bench.tug.sessions import truth_of
 from services.cli.assembly import build_chain
 from services.faults.faults import HubGap, SensorOff
@@ -55,7 +55,7 @@ def test_the_report_has_the_time_and_every_phase():
     payloads = undisturbed()
     assert final(payloads).final
     assert metric(payloads, "tug_time") == pytest.approx(true_time_s(SPEC), abs=0.2)
-    assert [phase.phase for phase in final(payloads).phases] == list(TaskPhaseKind)
+    assert [phase.phase for phase in final(payloads).phases] == list(TASK_PHASES[Task.TIMED_UP_AND_GO])
     assert metric(payloads, "tug_attempts") == 1.0
     assert metric(payloads, "tug_steps") > 6
 
@@ -66,7 +66,7 @@ def test_the_gait_is_found_beside_the_test():
 
 def test_phases_are_counted_while_the_session_runs():
     running = [payload for payload in undisturbed() if isinstance(payload, SessionMetrics) and not payload.final]
-    assert len(running) == len(TaskPhaseKind)
+    assert len(running) == len(TASK_PHASES[Task.TIMED_UP_AND_GO])
     assert [sum(phase.end_ns is not None for phase in each.phases) for each in running] == [1, 2, 3, 4, 5]
 
 

@@ -6,6 +6,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from schemas.conditions import UNSAID
 from schemas.session import Anthropometry, HubDescription, Placement, SensorDescription, SessionDescription
 from schemas.vocabulary import Task
 from services.bench.accuracy.joint_scores import Score, best_score, column_of, score
@@ -54,7 +55,7 @@ def describe() -> SessionDescription:
     )
     return SessionDescription(
         session="kam", title="Single treadmill steps", started_unix_ns=0, origin="recording", protocol="walking",
-        task=Task.WALK, walkway_m=None, estimator="ekf", walk_path="turning",
+        task=Task.WALK, walkway_m=None, conditions=UNSAID, estimator="ekf", walk_path="turning",
         hubs=[HubDescription(name="imu", sensors=sensors)], cameras=[], anthropometry=body,
         standing=[], reference=[], duration_s=None, known_rhythms=[],
     )  # fmt: skip

@@ -16,6 +16,7 @@ from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from pathlib import Path
 
+from schemas.conditions import UNSAID
 from schemas.health import Progress
 from schemas.imu import ImuBatch, SensorSamples
 from schemas.session import Anthropometry, HubDescription, SessionDescription
@@ -181,6 +182,7 @@ def describe(session: str) -> SessionDescription:
         protocol="walk",
         task=Task.WALK,
         walkway_m=None,
+        conditions=UNSAID,
         estimator="ekf",
         walk_path="turning",
         hubs=[HubDescription(name="hub", sensors=[])],

@@ -7,14 +7,14 @@ import numpy as np
 from numpy.typing import NDArray
 
 from schemas.tasks import TaskPhase
-from schemas.vocabulary import TaskPhaseKind
+from schemas.vocabulary import TASK_PHASES, Task
 from services.bench.scoreboard import Row, at_least, at_most, informative
 from services.ingest.synthetic.tug_plan import TruePhase
 
 Array = NDArray[np.float64]
 
 BOUNDARIES = ("first motion", "upright", "turn begins", "turn ends", "turn to sit begins", "seated")
-PHASES = len(TaskPhaseKind)
+PHASES = len(TASK_PHASES[Task.TIMED_UP_AND_GO])
 SAME_ATTEMPT_S = 3.0
 """s between two beginnings that are those of one attempt."""
 

@@ -2,6 +2,7 @@
 
 import numpy as np
 
+from schemas.conditions import UNSAID
 from schemas.session import Anthropometry, HubDescription, Placement, SensorDescription, SessionDescription
 from schemas.vocabulary import LOWER_BODY_ESTIMATORS, Task
 from services.biomech.forward_kinematics import segment_poses
@@ -39,7 +40,8 @@ def _session(estimator: str, sensors: list[SensorDescription]) -> SessionDescrip
     )
     return SessionDescription(
         session="warm-up", title="", started_unix_ns=0, origin="synthetic", protocol="", task=Task.WALK,
-        walkway_m=None, estimator=estimator, walk_path="turning", hubs=[HubDescription(name="none", sensors=sensors)],
+        walkway_m=None, conditions=UNSAID,
+        estimator=estimator, walk_path="turning", hubs=[HubDescription(name="none", sensors=sensors)],
         cameras=[],
         anthropometry=body, standing=[], reference=[], duration_s=None, known_rhythms=[],
     )  # fmt: skip

@@ -6,6 +6,9 @@ from datetime import UTC, datetime
 from sqlalchemy import func, select
 from sqlalchemy.orm import Session
 
+from schemas.conditions import UNSAID, Conditions
+from schemas.vocabulary import Side
+from services.gateway.patients.models import PatientIn
 from services.gateway.problems import not_found
 from services.gateway.tables import PatientRow, SessionRow
 
@@ -15,12 +18,12 @@ ALPHABET = "23456789ABCDEFGHJKMNPQRSTVWXYZ"
 CODE_LENGTH = 6
 
 
-def add_patient(database: Session, year_of_birth: int | None) -> PatientRow:
+def add_patient(database: Session, person: PatientIn) -> PatientRow:
     """Store a new patient under a fresh random code."""
     code = _random_code()
     while database.get(PatientRow, code) is not None:
         code = _random_code()
-    row = PatientRow(code=code, year_of_birth=year_of_birth, created=datetime.now(UTC))
+    row = PatientRow(code=code, created=datetime.now(UTC), **person.model_dump())
     database.add(row)
     return row
 
@@ -31,6 +34,13 @@ def get_patient(database: Session, code: str) -> PatientRow:
     if row is None:
         raise not_found("patient", code)
     return row
+
+
+def with_known_side(conditions: Conditions | None, patient: PatientRow) -> Conditions | None:
+    """Conditions in which the paretic side is the patient's, unless they name one themselves."""
+    if patient.paretic_side is None or (conditions is not None and conditions.paretic_side is not None):
+        return conditions
+    return (conditions or UNSAID).model_copy(update={"paretic_side": Side(patient.paretic_side)})
 
 
 def list_patients(database: Session, offset: int, limit: int) -> tuple[int, list[PatientRow]]:

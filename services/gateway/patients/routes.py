@@ -18,7 +18,7 @@ router = APIRouter(prefix="/v1/patients", tags=["patients"])
 def create_patient(body: PatientIn, gateway: Context) -> PatientOut:
     """Register a patient; the answer has the random code to write on the chart."""
     with gateway.database.transaction() as database:
-        return _shape(database, [records.add_patient(database, body.year_of_birth)])[0]
+        return _shape(database, [records.add_patient(database, body)])[0]
 
 
 @router.get("", responses=documented())
@@ -38,10 +38,11 @@ def read_patient(code: PatientCode, gateway: Context) -> PatientOut:
 
 @router.patch("/{code}", responses=documented(HTTPStatus.NOT_FOUND))
 def change_patient(code: PatientCode, body: PatientChange, gateway: Context) -> PatientOut:
-    """Correct the year of birth, or take it out with null."""
+    """Correct what is known of the patient. Fields that are left out stay; null takes one out."""
     with gateway.database.transaction() as database:
         row = records.get_patient(database, code)
-        row.year_of_birth = body.year_of_birth
+        for name, value in body.model_dump(exclude_unset=True).items():
+            setattr(row, name, value)
         return _shape(database, [row])[0]
 
 
@@ -49,7 +50,13 @@ def _shape(database: Session, rows: list[PatientRow]) -> list[PatientOut]:
     counts = records.count_sessions(database, [row.code for row in rows])
     return [
         PatientOut(
-            code=row.code, year_of_birth=row.year_of_birth, created=row.created, sessions=counts.get(row.code, 0)
+            code=row.code,
+            year_of_birth=row.year_of_birth,
+            sex=row.sex,
+            population=row.population,
+            paretic_side=row.paretic_side,
+            created=row.created,
+            sessions=counts.get(row.code, 0),
         )
         for row in rows
     ]

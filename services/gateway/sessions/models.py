@@ -6,7 +6,9 @@ from typing import Annotated, Literal
 
 from pydantic import AfterValidator, BaseModel, ConfigDict, Field
 
+from schemas.conditions import Conditions
 from schemas.gait import CURVE_POINTS
+from schemas.metrics import Doubt, TrustGrade
 from schemas.session import WalkPath
 from schemas.vocabulary import ESTIMATORS, Misplacement, Side, Task, TaskPhaseKind
 
@@ -63,6 +65,9 @@ class SessionIn(BaseModel):
         le=100,
         description="m from start to turning point of a timed up and go; null for what the source says",
         examples=[3.0],
+    )
+    conditions: Conditions | None = Field(
+        default=None, description="how the test is done; null for what the source and the patient's record say"
     )
     patient: Code | None = Field(default=None, description="patient code; null to link it later")
 
@@ -128,6 +133,8 @@ class SessionOut(BaseModel):
     source: str | None = Field(description="as asked for; null when it started by itself", examples=["synthetic:walk"])
     task: Task | None = Field(description="what the person is asked to do; null before the start", examples=["walk"])
     walkway_m: float | None = Field(description="m from start to turning point of a timed test", examples=[None])
+    conditions: Conditions | None = Field(description="how the test is done; null before the start")
+    software: str | None = Field(description="what computed the metrics; null before them", examples=["ambula 0.1.0"])
     datum: str | None = Field(
         description="what an angle of zero means; null before the calibration",
         examples=["quiet standing, both segments vertical"],
@@ -162,11 +169,15 @@ class MetricOut(BaseModel):
 
     name: str = Field(examples=["walking_speed"])
     side: Literal["left", "right"] | None = Field(description="null for the whole body", examples=[None])
-    unit: str = Field(description="unit of the next three", examples=["m/s"])
+    unit: str = Field(description="unit of the next five", examples=["m/s"])
     value: float | None = Field(description="in `unit`; null when withheld", examples=[1.12])
     spread: float | None = Field(description="in `unit`: standard deviation over the strides", examples=[0.04])
     mean_std: float | None = Field(description="in `unit`: standard error of the value", examples=[0.01])
+    low: float | None = Field(description="in `unit`: lower end of the 95 % interval", examples=[1.09])
+    high: float | None = Field(description="in `unit`: upper end of the 95 % interval", examples=[1.15])
     strides: int = Field(ge=0, description="number of strides it rests on", examples=[42])
+    grade: TrustGrade = Field(examples=["good"])
+    doubts: list[Doubt] = Field(description="what led to the grade, the weightiest first", examples=[[]])
     withheld_because: str | None = Field(description="why there is no value", examples=[None])
 
 

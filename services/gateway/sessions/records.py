@@ -58,6 +58,7 @@ def record_start(database: Session, description: SessionDescription) -> SessionR
     row.estimator = description.estimator[:64]
     row.origin = description.origin
     row.task, row.walkway_m = description.task, description.walkway_m
+    row.description = description.model_dump(mode="json", exclude={"known_rhythms"})
     row.started = datetime.fromtimestamp(description.started_unix_ns / 1e9, UTC)
     if row.state != SessionState.FINISHED:
         row.state, row.reason, row.ended = SessionState.LIVE, None, None
@@ -75,6 +76,7 @@ def record_metrics(database: Session, session: str, metrics: SessionMetrics) -> 
             session_id=session,
             final=metrics.final,
             received=datetime.now(UTC),
+            software=metrics.software[:100],
             body=metrics.model_dump(mode="json"),
         )
         database.merge(stored)

@@ -11,7 +11,7 @@ from schemas.metrics import SessionMetrics
 from schemas.session import SessionDescription
 from services.gateway.context import Context, Gateway, Limit, Offset, SessionId
 from services.gateway.control import ControlRefused, ControlUnavailable, StartRequest
-from services.gateway.patients.records import get_patient
+from services.gateway.patients.records import get_patient, with_known_side
 from services.gateway.problems import Problem, documented
 from services.gateway.sessions import records, shapes
 from services.gateway.sessions.models import (
@@ -44,14 +44,14 @@ def start_session(body: SessionIn, gateway: Context) -> SessionOut:
 
     With a patient, the session knows the rhythms of the patient's previous trial and visit and starts from them.
     """
-    session, known = records.new_session_id(), None
+    session, known, conditions = records.new_session_id(), None, body.conditions
     with gateway.database.transaction() as database:
         if body.patient is not None:
-            get_patient(database, body.patient)
+            conditions = with_known_side(body.conditions, get_patient(database, body.patient))
             known = known_rhythms(database, body.patient, datetime.now(UTC))
         records.add_requested(database, session, body)
     order = StartRequest(
-        session, body.source, body.speed, body.estimator, body.walk_path, known, body.task, body.walkway_m
+        session, body.source, body.speed, body.estimator, body.walk_path, known, body.task, body.walkway_m, conditions
     )
     description = _ask_for_start(gateway, order)
     with gateway.database.transaction() as database:

@@ -2,6 +2,7 @@
 
 import math
 
+from schemas.conditions import Conditions
 from schemas.kinematics import Calibration
 from schemas.metrics import SessionMetrics
 from schemas.tasks import Repetition, TaskPhase
@@ -39,6 +40,8 @@ def session_out(row: SessionRow) -> SessionOut:
         source=row.source,
         task=row.task,
         walkway_m=row.walkway_m,
+        conditions=None if row.description is None else Conditions.model_validate(row.description["conditions"]),
+        software=None if row.metrics is None else row.metrics.software,
         datum=None if calibration is None else calibration.datum,
         misplaced={} if calibration is None else calibration.misplaced,
         absolute=None if calibration is None else calibration.absolute,

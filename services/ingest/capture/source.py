@@ -7,6 +7,7 @@ import time
 from collections import deque
 from collections.abc import Iterator
 
+from schemas.conditions import UNSAID
 from schemas.health import Reason, Rejection, StreamCount
 from schemas.session import CameraDescription, SessionDescription
 from schemas.vocabulary import CameraKind, Task
@@ -162,6 +163,7 @@ class CaptureSource:
             protocol="",
             task=Task.WALK,
             walkway_m=None,
+            conditions=UNSAID,
             estimator=usual_estimator(hubs=False, cameras=True),
             walk_path="turning",
             hubs=[],

@@ -10,6 +10,7 @@ import numpy as np
 from scipy.interpolate import PchipInterpolator
 from scipy.optimize import brentq
 
+from schemas.conditions import UNSAID
 from schemas.session import Anthropometry, HubDescription, ReferenceChannel, SessionDescription
 from schemas.vocabulary import LOWER_BODY, Side, Task
 from services.ingest.synthetic.block import Block, SeenFrames
@@ -118,6 +119,7 @@ class SyntheticSession(ABC):
             protocol=self.protocol,
             task=self.task,
             walkway_m=self.walkway_m,
+            conditions=UNSAID,
             estimator=self._estimator,
             walk_path="turning" if self.camera is None else "straight",
             hubs=self._hubs,

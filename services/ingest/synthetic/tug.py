@@ -4,7 +4,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from schemas.vocabulary import Task, TaskPhaseKind
+from schemas.vocabulary import TASK_PHASES, Task
 from services.ingest.errors import InvalidOption
 from services.ingest.synthetic.gait import Gait, Strides
 from services.ingest.synthetic.jets import Array, Jet
@@ -15,7 +15,7 @@ from services.ingest.synthetic.tug_plan import TruePhase, plan_tug
 from services.ingest.synthetic.tug_posture import Posture
 
 PHASE_CHANNEL = "task_phase"
-"""Channel of truth: 0 in no phase, else the number of the phase in TaskPhaseKind, from 1."""
+"""Channel of truth: 0 in no phase, else the number of the phase in TASK_PHASES, from 1."""
 FIDGET_S = 1.5
 """s from one restless movement of a seated person to the next."""
 
@@ -59,7 +59,7 @@ class SyntheticTug(SyntheticSession):
     def own_truth(self, time_s: Array) -> Array:
         """The phase of the test at each instant."""
         phase = np.zeros_like(time_s)
-        for number, kind in enumerate(TaskPhaseKind, start=1):
+        for number, kind in enumerate(TASK_PHASES[Task.TIMED_UP_AND_GO], start=1):
             for true in self.plan.phases:
                 if true.phase is kind:
                     phase[(time_s >= true.start_s) & (time_s < true.end_s)] = number

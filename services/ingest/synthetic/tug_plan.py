@@ -6,7 +6,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from schemas.vocabulary import TaskPhaseKind
+from schemas.vocabulary import TASK_PHASES, Task, TaskPhaseKind
 from services.ingest.synthetic.jets import Array, Jet, smooth_step
 from services.ingest.synthetic.parameters import TugParameters
 from services.ingest.synthetic.tempo import OwnPace, Tempo
@@ -283,5 +283,5 @@ def _phases(number: int, attempt: Attempt, timeline: TugTimeline, lead: float) -
     else:
         (begins_s, ends_s), (last_s, _) = (timeline.turned_within(turn) for turn in attempt.turns)
         instants += [begins_s, ends_s, last_s, over_s(*sit.thigh)]
-    spans = zip(TaskPhaseKind, instants, instants[1:], strict=False)
+    spans = zip(TASK_PHASES[Task.TIMED_UP_AND_GO], instants, instants[1:], strict=False)
     return [TruePhase(number, kind, start_s, end_s) for kind, start_s, end_s in spans]

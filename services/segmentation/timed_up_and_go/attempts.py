@@ -144,6 +144,8 @@ class Attempts:
             end_ns=end_ns,
             end_std_s=end_std_s,
             steps=None if end_ns is None else self.steps.of_both(state.start_ns, end_ns),
+            distance_m=None,
+            distance_std_m=None,
             **known,
         )
 

@@ -6,6 +6,7 @@ from alembic.migration import MigrationContext
 from sqlalchemy import inspect, text
 
 from services.gateway.database import Database, DatabaseError, open_database
+from services.gateway.patients.models import PatientIn
 from services.gateway.patients.records import add_patient
 from services.gateway.sessions import records
 from services.gateway.settings import GatewaySettings
@@ -33,7 +34,7 @@ def test_down_and_up_again(database):
 
 def test_migrating_again_keeps_the_data(database, made):
     with database.transaction() as session:
-        add_patient(session, 1957)
+        add_patient(session, PatientIn(year_of_birth=1957))
         records.record_start(session, made.describe("a"))
         session.flush()
         records.record_metrics(session, "a", made.metrics_at(5.0, final=True))
@@ -63,7 +64,7 @@ def test_commits_survive_a_power_cut_and_readers_do_not_wait(database):
 def test_a_transaction_that_fails_leaves_nothing(database):
     def fail():
         with database.transaction() as session:
-            add_patient(session, None)
+            add_patient(session, PatientIn())
             raise RuntimeError
 
     with pytest.raises(RuntimeError):

@@ -12,7 +12,9 @@ def test_a_patient_gets_a_random_code_and_nothing_else(client):
     assert set(first["code"]) <= set(records.ALPHABET)
     assert first["code"] != second["code"]
     assert (first["year_of_birth"], second["year_of_birth"]) == (1957, None)
-    assert set(first) == {"code", "year_of_birth", "created", "sessions"}
+    assert set(first) == {
+        "code", "year_of_birth", "sex", "population", "paretic_side", "created", "sessions"
+    }  # fmt: skip
 
 
 def test_patients_are_listed_newest_first_in_pages(client):

@@ -5,7 +5,7 @@ import json
 import pytest
 
 from schemas.tasks import TaskPhase
-from schemas.vocabulary import Task, TaskPhaseKind
+from schemas.vocabulary import TASK_PHASES, Task, TaskPhaseKind
 from services.metrics.attempts import AttemptTotals
 from services.metrics.parameters import MetricsParameters
 
@@ -15,7 +15,7 @@ PARAMETERS = MetricsParameters()
 def phases(attempt: int = 0, lasts: float = 2.0, first_s: float = 0.0, **changes) -> list[TaskPhase]:
     """Begin and end of all five phases, each as long."""
     found = []
-    for number, kind in enumerate(TaskPhaseKind):
+    for number, kind in enumerate(TASK_PHASES[Task.TIMED_UP_AND_GO]):
         start_s = first_s + number * lasts
         fields = {
             "task": Task.TIMED_UP_AND_GO,

@@ -133,6 +133,9 @@ export const SENSOR_WORDS = {
 export const TASKS = {
   walk: "Walk",
   timed_up_and_go: "Timed up and go",
+  six_minute_walk: "Six-minute walk",
+  ten_metre_walk: "Ten-metre walk",
+  marching: "Marching on the spot",
   knee_flexion: "Knee bending",
   squat: "Squat",
   stepping: "Stepping on the spot",

@@ -9,6 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.interpolate import CubicSpline
 
+from schemas.conditions import UNSAID
 from schemas.session import Anthropometry, ReferenceChannel, SessionDescription
 from schemas.vocabulary import ANKLES, WHOLE_BODY, Task
 from services.biomech.whole_body.model import LENGTH_NAMES, WholeBodyModel
@@ -116,6 +117,7 @@ class SyntheticTask:
             protocol=self.protocol,
             task=self.task,
             walkway_m=None,
+            conditions=UNSAID,
             estimator="body_cekf",
             walk_path="turning",
             hubs=[],

@@ -7,7 +7,7 @@ from functools import cache
 import pytest
 
 from schemas.tasks import TaskPhase
-from schemas.vocabulary import Task, TaskPhaseKind
+from schemas.vocabulary import TASK_PHASES, Task, TaskPhaseKind
 from services.bench.tug.joint_tugs import joint_tug
 from services.bench.tug.scores import boundaries_s, is_complete
 from services.flow.message import Message
@@ -54,7 +54,7 @@ def test_every_boundary_is_found_where_it_is(motion: str, worn: str) -> None:
     query = motion + WORN[worn]
     attempts = ended(outputs(query))
     assert list(attempts) == [0]
-    assert [phase.phase for phase in attempts[0]] == list(TaskPhaseKind)
+    assert [phase.phase for phase in attempts[0]] == list(TASK_PHASES[Task.TIMED_UP_AND_GO])
     assert is_complete(attempts[0])
     truth = joint_tug(query).phases
     true_s = [truth[0].start_s, *(phase.end_s for phase in truth)]
@@ -68,7 +68,7 @@ def test_every_boundary_is_found_where_it_is(motion: str, worn: str) -> None:
 def test_each_phase_is_told_when_it_begins_and_again_when_it_has_ended() -> None:
     found = phases(outputs(USUAL))
     assert [(phase.phase, phase.end_ns is None) for phase in found] == [
-        (kind, begins) for kind in TaskPhaseKind for begins in (True, False)
+        (kind, begins) for kind in TASK_PHASES[Task.TIMED_UP_AND_GO] for begins in (True, False)
     ]
     for begun in (phase for phase in found if phase.end_ns is None):
         over = next(phase for phase in found if phase.phase is begun.phase and phase.end_ns is not None)
