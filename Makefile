@@ -19,11 +19,11 @@ help: ## this list
 
 install: $(VENV)/.installed $(DIST)/.built ## a .venv with everything and the web page
 
-$(VENV)/.installed: requirements.lock pyproject.toml
+$(VENV)/.installed: requirements-dev.lock pyproject.toml
 	@$(PYTHON) -c 'import sys; sys.exit(sys.version_info < (3, 11))' || \
 	  { echo "Ambula needs Python 3.11 or newer; $(PYTHON) is older. Name another: make PYTHON=python3.12"; exit 1; }
 	$(PYTHON) -m venv $(VENV)
-	$(BIN)/python -m pip install --quiet --disable-pip-version-check --require-hashes --requirement requirements.lock
+	$(BIN)/python -m pip install --quiet --disable-pip-version-check --require-hashes --requirement requirements-dev.lock
 	$(BIN)/python -m pip install --quiet --disable-pip-version-check --no-deps --editable .
 	@touch $@
 
@@ -56,10 +56,13 @@ schemas: install ## write schemas/published from the models
 screenshots: install ## the pictures of the README
 	$(BIN)/python -m services.cli.screenshots services/gateway/pictures
 
-lock: $(VENV)/.installed ## pin all dependencies again
+LOCKING = pip compile pyproject.toml --generate-hashes --universal --python-version 3.11 --quiet \
+  --no-emit-index-url --no-emit-find-links --no-annotate --no-header
+
+lock: $(VENV)/.installed ## pin all dependencies again: what services need, and what work on them needs
 	$(BIN)/python -m pip install --quiet uv
-	$(BIN)/uv pip compile pyproject.toml --group dev --extra bench --generate-hashes --universal --python-version 3.11 \
-	  --no-emit-index-url --no-emit-find-links --no-annotate --no-header --output-file requirements.lock
+	$(BIN)/uv $(LOCKING) --output-file requirements.lock
+	$(BIN)/uv $(LOCKING) --group dev --extra bench --output-file requirements-dev.lock
 
 clean: ## remove what was installed and built
 	rm -rf $(VENV) $(DIST) $(WEB)/node_modules
