@@ -23,7 +23,7 @@ from tests.unit.gateway.walk import contact_at, describe, metrics_at, pose_at, s
 
 pytestmark = pytest.mark.system
 
-ORDER = StartRequest("a", "synthetic:walk", 1.0, None, None, None, None, None)
+ORDER = StartRequest("a", "synthetic:walk", 1.0, None, None, None, None, None, None)
 
 
 class Listening:
