@@ -119,6 +119,13 @@ def exercises(json_path: Path | None = None, *subject: str) -> Scoreboard:
     return run(json_path, *subject)
 
 
+def metrics(json_path: Path | None = None, *section: str, report: Path | None = None) -> Scoreboard:
+    """Metrics, progress, report and exports against what is known."""
+    from services.bench.metrics.board import run
+
+    return run(json_path, *section, report=report)
+
+
 SCOREBOARDS: dict[str, Callable[..., Scoreboard]] = {
     "accuracy": accuracy,
     "chain": chain,
@@ -128,6 +135,7 @@ SCOREBOARDS: dict[str, Callable[..., Scoreboard]] = {
     "kinect": kinect,
     "knee": knee,
     "loss": loss,
+    "metrics": metrics,
     "recovery": recovery,
     "repetitions": repetitions,
     "rhythm": rhythm,
