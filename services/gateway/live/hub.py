@@ -21,6 +21,8 @@ from services.gateway.parameters import GatewayParameters
 log = logging.getLogger(__name__)
 
 _CARD_HEAD = ("id", "title", "patient", "task", "estimator", "started_unix_s", "duration_s")
+_CARD_PHASES = 5
+"""As many as a timed up and go has; a six-minute walk has dozens, which no card shows."""
 
 
 class NotLive(LookupError):
@@ -257,6 +259,6 @@ class LiveHub:
             "cadence_per_min": None if pose is None else pose.cadence_per_min,
             "strides": sum(view["index"] + 1 for view in live.memory.of("stride")),
             "repetitions": sum(view["index"] + 1 for view in live.memory.of("repetition")),
-            "task_phases": live.memory.of("task_phase"),
+            "task_phases": live.memory.newest_phases(_CARD_PHASES),
             "misplaced": next((view["misplaced"] for view in live.memory.of("calibration")), {}),
         }

@@ -34,6 +34,7 @@ def session_view(description: SessionDescription, patient: str | None) -> View:
         "protocol": description.protocol,
         "task": description.task,
         "walkway_m": description.walkway_m,
+        "conditions": description.conditions.model_dump(mode="json"),
         "estimator": description.estimator,
         "walk_path": description.walk_path,
         "started_unix_s": round(description.started_unix_ns / 1e9, 3),
@@ -162,6 +163,7 @@ def phase_view(phase: TaskPhase) -> View:
         "start_std_s": phase.start_std_s,
         "end_s": None if phase.end_ns is None else seconds(phase.end_ns),
         "end_std_s": phase.end_std_s,
+        "distance_m": phase.distance_m,
     }
 
 

@@ -239,6 +239,8 @@ class PhaseOut(BaseModel):
         description="rad/s, of the thighs' inclination, in rising or sitting", examples=[2.1]
     )
     steps: int | None = Field(description="number of steps of both legs; null unless both are seen", examples=[None])
+    distance_m: float | None = Field(description="m walked in it; null where not measured", examples=[None])
+    distance_std_m: float | None = Field(description="m, one standard deviation", examples=[None])
 
 
 class PhasesOut(BaseModel):

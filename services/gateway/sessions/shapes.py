@@ -82,6 +82,8 @@ def _phase_out(phase: TaskPhase) -> PhaseOut:
         largest_turn_rate=phase.largest_turn_rate,
         largest_thigh_rate=phase.largest_thigh_rate,
         steps=phase.steps,
+        distance_m=phase.distance_m,
+        distance_std_m=phase.distance_std_m,
     )
 
 

@@ -196,3 +196,17 @@ def test_memory_does_not_grow_with_the_session():
         memory.keep(views.repetition_view(repetition_of(index)))
         memory.keep({"kind": "gait_event", "side": "left", "at_s": float(index)})
     assert [view["index"] for view in memory] == [499]
+
+
+def test_whoever_comes_late_to_a_six_minute_walk_is_told_every_walk_turn_and_rest():
+    memory = Memory()
+    kinds = [TaskPhaseKind.WALK, TaskPhaseKind.TURN, TaskPhaseKind.WALK, TaskPhaseKind.REST, TaskPhaseKind.WALK]
+    for place, kind in enumerate(kinds):
+        for end_s in (None, place + 1.0):
+            phase = phase_of(kind, float(place), end_s)
+            memory.keep(views.phase_view(phase.model_copy(update={"task": Task.SIX_MINUTE_WALK, "distance_m": 7.0})))
+    assert [(each["phase"], each["end_s"]) for each in memory.of("task_phase")] == [
+        (kind, place + 1.0) for place, kind in enumerate(kinds)
+    ]
+    assert sum(each["distance_m"] for each in memory.of("task_phase")) == 35.0
+    assert [each["start_s"] for each in memory.newest_phases(2)] == [3.0, 4.0]
