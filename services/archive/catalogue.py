@@ -4,8 +4,7 @@ import json
 from pathlib import Path
 
 from schemas.archive_layout import MANIFEST_FILE, Manifest
-from services.archive.manifest import load
-from services.archive.recovery import session_folders
+from services.recordings.folder import read_manifest, session_folders
 
 
 class Catalogue:
@@ -33,7 +32,7 @@ class Catalogue:
             return None
         stamp = (facts.st_mtime_ns, facts.st_ino)
         if folder not in self._known or self._known[folder][0] != stamp:
-            manifest = load(folder)
+            manifest = read_manifest(folder)
             if manifest is None:
                 return None
             self._known[folder] = (stamp, manifest)

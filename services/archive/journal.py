@@ -38,10 +38,10 @@ from schemas.payload import SCHEMA_VERSION, Payload
 from schemas.session import SessionDescription
 from schemas.signals import GAP, SESSION, Signal
 from services.archive.disk import Disk
-from services.archive.frames import MAGIC, Opcode
-from services.archive.parameters import MIB
-from services.archive.record import Record
 from services.flow.message import Envelope
+from services.recordings.frames import MAGIC, Opcode
+from services.recordings.limits import MIB
+from services.recordings.record import Record
 
 _MESSAGE = struct.Struct("<BQHIQQ")
 _FIXED = 2 + 4 + 8 + 8

@@ -5,7 +5,7 @@ import os
 from pathlib import Path
 from typing import Self
 
-from services.archive.errors import ArchiveError
+from services.recordings.errors import ArchiveError
 
 LOCK_FILE = ".archive.lock"
 

@@ -1,27 +1,15 @@
-"""`manifest.json`: read, written whole or not at all, and made anew from the files when it is missing."""
+"""`manifest.json`: written whole or not at all, and made anew from the files when it is missing."""
 
-import hashlib
 from collections.abc import Iterable
 from pathlib import Path
 
-from pydantic import ValidationError
-
-from schemas.archive_layout import MANIFEST_FILE, Manifest, RecordingState, SegmentEntry, SegmentName, parse_file_name
+from schemas.archive_layout import MANIFEST_FILE, Manifest, RecordingState, SegmentEntry
 from schemas.session import SessionDescription
 from services.archive.disk import Disk
-from services.archive.errors import NotARecording
-from services.archive.ledger import Ledger
 from services.archive.seal import entry_of
-from services.archive.segment import scan
-
-_HASH_BLOCK = 1 << 20
-
-
-def segment_files(folder: Path) -> list[tuple[SegmentName, Path]]:
-    """The files of a session, closed or open, raw first, in the order in which they were recorded."""
-    named = ((parse_file_name(path.name), path) for path in folder.iterdir() if path.is_file())
-    found = [(name, path) for name, path in named if name is not None]
-    return sorted(found, key=lambda item: (item[0].version or "", item[0].number, item[0].part))
+from services.recordings.errors import NotARecording
+from services.recordings.folder import segment_files, sha256_of
+from services.recordings.segment import scan
 
 
 def new_manifest(description: SessionDescription, derived_version: str) -> Manifest:
@@ -58,14 +46,6 @@ def store(folder: Path, manifest: Manifest, disk: Disk) -> None:
     disk.replace_with(folder / MANIFEST_FILE, manifest.model_dump_json(indent=1).encode())
 
 
-def load(folder: Path) -> Manifest | None:
-    """The manifest of a folder; None when there is none or it cannot be read."""
-    try:
-        return Manifest.model_validate_json((folder / MANIFEST_FILE).read_bytes())
-    except (FileNotFoundError, ValidationError):
-        return None
-
-
 def rebuild(folder: Path, derived_version: str) -> Manifest:
     """Make the manifest from the files. Raises NotARecording when none of them names the session.
 
@@ -92,22 +72,3 @@ def with_unlisted(folder: Path, manifest: Manifest) -> Manifest:
     listed = {entry.name for entry in manifest.files}
     unlisted = [path for name, path in segment_files(folder) if not name.part and name.file_name not in listed]
     return with_files(manifest, (entry_of(scan(path), sha256_of(path), path.stat().st_size) for path in unlisted))
-
-
-def sha256_of(path: Path) -> str:
-    """Hexadecimal digest of a file."""
-    digest = hashlib.sha256()
-    with path.open("rb") as file:
-        while block := file.read(_HASH_BLOCK):
-            digest.update(block)
-    return digest.hexdigest()
-
-
-def ledger_of(manifest: Manifest) -> Ledger:
-    """What the closed files of the live recording hold of each stream."""
-    ledger = Ledger()
-    for entry in manifest.files:
-        name = parse_file_name(entry.name)
-        if name is not None and name.version in (None, manifest.derived_version):
-            ledger.absorb(entry.streams)
-    return ledger

@@ -2,7 +2,8 @@
 
 from dataclasses import dataclass
 
-MIB = 1024 * 1024
+from services.recordings.limits import MIB
+
 GIB = 1024 * MIB
 
 
@@ -44,17 +45,4 @@ class ArchiveParameters:
     """newest checkpoints kept in memory: three nodes of 200 sessions."""
 
 
-@dataclass(frozen=True)
-class ReadLimits:
-    """Caps against damaged and hostile files (media type application/vnd.mcap, security considerations)."""
-
-    record_bytes: int = 64 * MIB
-    """largest record taken from a file; ours stay near 1 MiB."""
-    chunk_bytes: int = 64 * MIB
-    """largest chunk after decompression; ours stay near 1 MiB."""
-    open_bytes: int = 256 * MIB
-    """most decompressed data held at once while messages are put in time order."""
-
-
 PARAMETERS = ArchiveParameters()
-LIMITS = ReadLimits()

@@ -14,8 +14,8 @@ from functools import partial
 from pathlib import Path
 
 from services.archive.parameters import ArchiveParameters
-from services.archive.record import Record
 from services.archive.writer import PendingSync, SessionWriter
+from services.recordings.record import Record
 
 log = logging.getLogger("archive")
 

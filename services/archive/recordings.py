@@ -17,7 +17,6 @@ from services.archive.disk import Disk
 from services.archive.live_session import LiveSession, Phase, expected_streams
 from services.archive.manifest import new_manifest
 from services.archive.parameters import ArchiveParameters
-from services.archive.record import Record
 from services.archive.recorder import Closed, Recorder
 from services.archive.recovery import Recovered, recover
 from services.archive.sealer import Sealer, SealJob
@@ -30,6 +29,7 @@ from services.bus.receiver import Delivery
 from services.flow.message import Stream
 from services.flow.position import Position
 from services.flow.rejections import RejectionCounter
+from services.recordings.record import Record
 
 log = logging.getLogger("archive")
 

@@ -3,22 +3,20 @@
 from dataclasses import dataclass
 from pathlib import Path
 
-from schemas.archive_layout import MANIFEST_FILE, Manifest, parse_file_name
+from schemas.archive_layout import Manifest, parse_file_name
 from schemas.session import SessionDescription
 from services.archive.disk import Disk
-from services.archive.errors import NotARecording
-from services.archive.ledger import Ledger
 from services.archive.manifest import (
-    ledger_of,
-    load,
     new_manifest,
     rebuild,
-    segment_files,
     store,
     with_unlisted,
 )
 from services.archive.seal import SEALING_SUFFIX
-from services.archive.segment import scan
+from services.recordings.errors import NotARecording
+from services.recordings.folder import ledger_of, read_manifest, segment_files
+from services.recordings.ledger import Ledger
+from services.recordings.segment import scan
 
 
 @dataclass
@@ -43,7 +41,7 @@ def recover(folder: Path, description: SessionDescription | None, derived_versio
     so that its files belong together. Returns None when there is nothing and no description. Raises OSError.
     """
     _sweep(folder, disk)
-    manifest = load(folder)
+    manifest = read_manifest(folder)
     if manifest is None and any(folder.glob("*.mcap*")):
         manifest = _rebuilt(folder, derived_version, disk)
     if manifest is None and description is not None:
@@ -58,17 +56,6 @@ def recover(folder: Path, description: SessionDescription | None, derived_versio
         if name is not None and name.version in (None, manifest.derived_version):
             ledger.absorb(scan(part).ledger.spans())
     return Recovered(folder, manifest, ledger, parts, _next_number(folder))
-
-
-def session_folders(data_dir: Path) -> list[Path]:
-    """Folders that hold, or could hold, a session."""
-    if not data_dir.is_dir():
-        return []
-    return sorted(folder for folder in data_dir.iterdir() if folder.is_dir() and _looks_recorded(folder))
-
-
-def _looks_recorded(folder: Path) -> bool:
-    return (folder / MANIFEST_FILE).exists() or any(folder.glob("*.mcap*"))
 
 
 def _sweep(folder: Path, disk: Disk) -> None:

@@ -14,11 +14,11 @@ from mcap.records import Channel, Schema
 from mcap.writer import CompressionType, Writer
 
 from schemas.archive_layout import DAMAGED_SUFFIX, PART_SUFFIX, PROFILE, SegmentEntry
-from services.archive.chunks import MESSAGE_HEAD, inner_records, open_chunk
 from services.archive.disk import Disk
-from services.archive.errors import DamageKind
-from services.archive.frames import Opcode
-from services.archive.segment import SegmentScan, scan
+from services.recordings.chunks import MESSAGE_HEAD, inner_records, open_chunk
+from services.recordings.errors import DamageKind
+from services.recordings.frames import Opcode
+from services.recordings.segment import SegmentScan, scan
 
 SEALING_SUFFIX = ".sealing"
 _WRITE_BUFFER = 1 << 20

@@ -7,12 +7,13 @@ from dataclasses import dataclass, field
 from pathlib import Path
 
 from schemas.archive_layout import Manifest, RecordingState
-from services.archive.chunks import BROKEN
 from services.archive.disk import Disk
-from services.archive.errors import ArchiveError
-from services.archive.manifest import load, store, with_files, with_state, with_unlisted
+from services.archive.manifest import store, with_files, with_state, with_unlisted
 from services.archive.parameters import ArchiveParameters
 from services.archive.seal import seal
+from services.recordings.chunks import BROKEN
+from services.recordings.errors import ArchiveError
+from services.recordings.folder import read_manifest
 
 log = logging.getLogger("archive")
 
@@ -114,7 +115,7 @@ class Sealer:
 
 def do_job(job: SealJob, software: str, disk: Disk, chunk_bytes: int) -> None:
     """Close the job's files one after the other and write the manifest. Can be repeated after an OSError."""
-    manifest = with_unlisted(job.folder, load(job.folder) or job.begin)
+    manifest = with_unlisted(job.folder, read_manifest(job.folder) or job.begin)
     for part in [part for part in job.parts if part.exists()]:
         entry = seal(part, software, disk, chunk_bytes)
         if entry is not None:

@@ -5,9 +5,9 @@ from pathlib import Path
 
 from schemas.archive_layout import RecordingState
 from services.archive.disk import Disk
-from services.archive.manifest import load, segment_files
-from services.archive.recovery import recover, session_folders
+from services.archive.recovery import recover
 from services.archive.sealer import SealJob
+from services.recordings.folder import read_manifest, segment_files, session_folders
 
 log = logging.getLogger("archive")
 
@@ -40,6 +40,6 @@ class StaleFolders:
 
 
 def _is_open(folder: Path) -> bool:
-    manifest = load(folder)
+    manifest = read_manifest(folder)
     still_open = (RecordingState.RECORDING, RecordingState.STOPPED)
     return manifest is None or manifest.state in still_open or any(name.part for name, _ in segment_files(folder))

@@ -11,10 +11,10 @@ from schemas.session import SessionDescription
 from schemas.signals import GAP
 from services.archive.disk import Disk
 from services.archive.journal import Journal
-from services.archive.ledger import Ledger
 from services.archive.parameters import PARAMETERS, ArchiveParameters
-from services.archive.record import Record
 from services.flow.message import Envelope
+from services.recordings.ledger import Ledger
+from services.recordings.record import Record
 
 
 @dataclass(frozen=True)

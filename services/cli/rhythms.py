@@ -5,9 +5,9 @@ from pathlib import Path
 from pydantic import ValidationError
 
 from schemas.rhythm import KnownRhythm, LearnedRhythm, RhythmKind
-from services.archive.errors import ArchiveError
-from services.archive.reader import open_recording
 from services.flow.message import DecodeError
+from services.recordings.errors import ArchiveError
+from services.recordings.reader import open_recording
 
 FILE_NAME = "learned_rhythm.json"
 """Where `ambula run` puts what it learned."""

@@ -26,13 +26,14 @@ from schemas.signals import (
     progress_key,
     session_token_key,
 )
-from services.archive.reader import open_recording, verify
 from services.bus.connection import Bus, RemoteError
 from services.bus.publisher import StreamPublisher
 from services.bus.received import Received
 from services.bus.router import choose_endpoint, open_router
 from services.bus.settings import BusSettings
 from services.flow.message import Envelope, Stream
+from services.recordings.folder import verify
+from services.recordings.reader import open_recording
 
 pytestmark = pytest.mark.system
 HUB = Stream(IMU, "hub")

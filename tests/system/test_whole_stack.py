@@ -15,7 +15,6 @@ from schemas.session import SessionDescription
 from schemas.signals import IMU, SIGNALS
 from schemas.skeleton import SkeletonBatch
 from schemas.vocabulary import LOWER_BODY
-from services.archive.reader import open_recording
 from services.bus.connection import Bus
 from services.bus.settings import BusSettings
 from services.cli import live
@@ -23,6 +22,7 @@ from services.cli.assembly import build_chain
 from services.cli.supervisor import Supervisor
 from services.flow.message import Message, encode_payload
 from services.ingest.source import iter_messages, open_source
+from services.recordings.reader import open_recording
 
 pytestmark = pytest.mark.system
 

@@ -22,8 +22,6 @@ from schemas.imu import ImuBatch, SensorSamples
 from schemas.session import Anthropometry, HubDescription, SessionDescription
 from schemas.signals import IMU, JOINT_STATE, description_key, progress_key, session_token_key
 from schemas.vocabulary import Task
-from services.archive.reader import open_recording
-from services.archive.record import Record
 from services.archive.writer import SessionWriter
 from services.bench.scoreboard import Row, Scoreboard, at_most, informative
 from services.bus.connection import Bus
@@ -32,6 +30,8 @@ from services.bus.received import Received
 from services.bus.router import choose_endpoint, open_router
 from services.bus.settings import BusSettings
 from services.flow.message import Envelope, Stream
+from services.recordings.reader import open_recording
+from services.recordings.record import Record
 
 KILLS = 20
 RATE_HZ = 100.0

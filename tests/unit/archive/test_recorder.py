@@ -8,13 +8,14 @@ import pytest
 from schemas.archive_layout import RecordingState
 from services.archive.catalogue import Catalogue
 from services.archive.disk import Disk
-from services.archive.manifest import load, new_manifest
+from services.archive.manifest import new_manifest
 from services.archive.parameters import ArchiveParameters
-from services.archive.reader import open_recording
 from services.archive.recorder import Recorder
 from services.archive.recovery import recover
 from services.archive.sealer import Sealer, SealJob
 from services.archive.writer import SessionWriter
+from services.recordings.folder import read_manifest
+from services.recordings.reader import open_recording
 
 VERSION = "0.1.0"
 FAST = ArchiveParameters(flush_interval_s=0.01, retry_s=0.02)
@@ -199,10 +200,10 @@ def test_sealer_tries_again(recorded, tape, description, failing_disk, fail_at):
     sealer.submit(job)
     assert sealer.wait(5)
     sealer.stop()
-    assert load(folder).state is RecordingState.FINISHED
+    assert read_manifest(folder).state is RecordingState.FINISHED
     assert len(list(open_recording(folder).records())) == 30
     assert recover(folder, None, VERSION, Disk()).parts == []
-    assert [entry.name for entry in load(folder).files] == ["raw.mcap"]
+    assert [entry.name for entry in read_manifest(folder).files] == ["raw.mcap"]
 
 
 def test_files_that_wait_to_be_closed_can_be_taken_back(recorded, tape, description, failing_disk):

@@ -10,11 +10,12 @@ import pytest
 
 from schemas.archive_layout import RecordingState
 from services.archive.disk import Disk
-from services.archive.manifest import load, sha256_of, store, with_files, with_state
-from services.archive.reader import open_recording, verify
-from services.archive.recovery import recover, session_folders
+from services.archive.manifest import store, with_files, with_state
+from services.archive.recovery import recover
 from services.archive.seal import seal
 from services.archive.writer import SessionWriter
+from services.recordings.folder import read_manifest, session_folders, sha256_of, verify
+from services.recordings.reader import open_recording
 
 VERSION = "0.1.0"
 EVERY_CALL = range(1, 200)
@@ -76,7 +77,7 @@ def test_a_corrupt_open_file_is_kept_and_the_rest_asked_for_again(recorded, tape
     go_on(folder, description, recovered, tape.walk(60))
     bring_in_order(folder, description)
     assert streams(folder) == {"imu/hub": tape.walk(60)}
-    assert "corrupt" in load(folder).files[0].damage
+    assert "corrupt" in read_manifest(folder).files[0].damage
 
 
 def test_an_empty_open_file_is_no_obstacle(tmp_path, description, tape):
@@ -104,7 +105,7 @@ def test_a_file_that_was_closed_already_is_not_closed_again(recorded, tape):
 
 def test_a_manifest_that_cannot_be_read_is_made_anew(recorded, tape):
     folder = recorded([*tape.walk(30), tape.record(tape.hub, 30, final=True)])
-    before = load(folder)
+    before = read_manifest(folder)
     (folder / "manifest.json").write_text("{")
     recovered = recover(folder, None, VERSION, Disk())
     assert recovered.manifest.files == before.files
@@ -204,7 +205,7 @@ import sys
 from pathlib import Path
 from schemas.session import SessionDescription
 from schemas.signals import IMU
-from services.archive.record import Record
+from services.recordings.record import Record
 from services.archive.writer import SessionWriter
 from services.flow.message import Envelope, Stream
 folder, text, limit = sys.argv[1:]
@@ -257,4 +258,4 @@ def test_a_full_disk_ends_the_file_not_the_recording(tmp_path, description):
     assert output[-2] == f"error {errno.EFBIG}"
     recovered = bring_in_order(tmp_path, description)
     assert positions(recovered)["imu/hub"] == int(output[-3])
-    assert sha256_of(tmp_path / "raw.mcap") == load(tmp_path).files[0].sha256
+    assert sha256_of(tmp_path / "raw.mcap") == read_manifest(tmp_path).files[0].sha256

@@ -9,15 +9,16 @@ from schemas.checkpoint import StreamPosition
 from schemas.health import Reason
 from schemas.session import ReferenceChannel
 from services.archive.disk import Disk
-from services.archive.ledger import Ledger
 from services.archive.live_session import LiveSession, Phase, expected_streams
 from services.archive.lock import DataFolderLock, DataFolderUnusable
-from services.archive.manifest import load, store, with_state
+from services.archive.manifest import store, with_state
 from services.archive.parameters import GIB, ArchiveParameters
 from services.archive.sealer import do_job
 from services.archive.space import Space
 from services.archive.stale import StaleFolders
 from services.archive.writer import SessionWriter, durable_of
+from services.recordings.folder import read_manifest
+from services.recordings.ledger import Ledger
 
 
 class MeasuredDisk(Disk):
@@ -105,7 +106,7 @@ def test_folders_of_an_earlier_run_are_closed_unless_their_session_is_back(recor
     for name in ("over", "back"):
         recorded(tape.walk(10), folder=tmp_path / name, closed=False)
     done = recorded(tape.walk(10), folder=tmp_path / "done")
-    store(done, with_state(load(done), RecordingState.FINISHED), Disk())
+    store(done, with_state(read_manifest(done), RecordingState.FINISHED), Disk())
     (tmp_path / "unreadable").mkdir()
     (tmp_path / "unreadable" / "raw.mcap").write_bytes(b"junk")
     stale = StaleFolders(tmp_path, "0.1.0", Disk())
@@ -114,8 +115,8 @@ def test_folders_of_an_earlier_run_are_closed_unless_their_session_is_back(recor
     assert (tmp_path / "unreadable" / "raw.mcap").read_bytes() == b"junk"
     job = stale.job(tmp_path / "over")
     do_job(job, "ambula test", Disk(), 1 << 20)
-    assert load(tmp_path / "over").state is RecordingState.INTERRUPTED
-    assert [entry.name for entry in load(tmp_path / "over").files] == ["raw.mcap"]
+    assert read_manifest(tmp_path / "over").state is RecordingState.INTERRUPTED
+    assert [entry.name for entry in read_manifest(tmp_path / "over").files] == ["raw.mcap"]
 
 
 def test_ledger_counts_epochs_apart():

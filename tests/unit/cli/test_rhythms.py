@@ -5,12 +5,12 @@ from typer.testing import CliRunner
 
 from schemas.rhythm import LearnedJoint, LearnedRhythm
 from schemas.signals import LEARNED_RHYTHM
-from services.archive.record import Record
 from services.archive.writer import SessionWriter
 from services.cli.__main__ import app
 from services.cli.rhythms import NoRhythm, read_known, read_rhythm
 from services.flow.message import Envelope, Stream, encode_payload
 from services.ingest.source import open_source
+from services.recordings.record import Record
 
 
 def learned(strides: int = 5) -> LearnedRhythm:

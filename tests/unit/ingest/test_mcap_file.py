@@ -10,12 +10,12 @@ from hypothesis import strategies as st
 
 from schemas.health import Reason
 from services.archive.disk import Disk
-from services.archive.record import Record
 from services.archive.seal import seal
 from services.archive.writer import SessionWriter
 from services.flow.message import Envelope, Message, Stream, encode_payload
 from services.ingest.errors import EmptyFile, MissingFile, SourceError, UnreadableFile
 from services.ingest.source import iter_messages, open_source
+from services.recordings.record import Record
 
 WALK = "synthetic:walk?duration=6&seed=2"
 STARTED = 1_790_000_000_000_000_000

@@ -5,13 +5,13 @@ import pytest
 from schemas.imu import ImuBatch
 from schemas.standing import StandingMark
 from services.archive.disk import Disk
-from services.archive.record import Record
 from services.archive.seal import seal
 from services.archive.writer import SessionWriter
 from services.cli.assembly import build_chain
 from services.flow.message import Message, encode_payload
 from services.ingest.source import in_batches, iter_messages, open_source
 from services.ingest.synthetic import write_recording
+from services.recordings.record import Record
 
 WALK = "synthetic:walk?duration=14&seed=2"
 MARK = StandingMark(from_ns=1_000_000_000, to_ns=3_000_000_000, given_ns=3_200_000_000)

@@ -10,8 +10,8 @@ from collections.abc import Iterator
 from enum import IntEnum
 from typing import BinaryIO, NamedTuple
 
-from services.archive.errors import Damage, DamageKind
-from services.archive.parameters import LIMITS, ReadLimits
+from services.recordings.errors import Damage, DamageKind
+from services.recordings.limits import LIMITS, ReadLimits
 
 MAGIC = b"\x89MCAP0\r\n"
 _HEAD = struct.Struct("<BQ")

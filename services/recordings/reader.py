@@ -18,14 +18,14 @@ from schemas.archive_layout import (
 )
 from schemas.session import SessionDescription
 from schemas.signals import GAP, Quality
-from services.archive.chunks import ChunkSpan, RawMessage, read_messages
-from services.archive.errors import ArchiveError, DamagedRecording, DamageKind, NotARecording
-from services.archive.ledger import Ledger
-from services.archive.manifest import load, segment_files, sha256_of
-from services.archive.parameters import LIMITS, ReadLimits
-from services.archive.record import Record
-from services.archive.segment import SegmentScan, scan
 from services.flow.message import Envelope, Message, Stream, decode_payload
+from services.recordings.chunks import ChunkSpan, RawMessage, read_messages
+from services.recordings.errors import ArchiveError, DamagedRecording, DamageKind, NotARecording
+from services.recordings.folder import read_manifest, segment_files
+from services.recordings.ledger import Ledger
+from services.recordings.limits import LIMITS, ReadLimits
+from services.recordings.record import Record
+from services.recordings.segment import SegmentScan, scan
 
 
 class _Waiting(NamedTuple):
@@ -86,23 +86,8 @@ def open_recording(folder: Path, derived_version: str | None = None, limits: Rea
     return _joined(folder, description, scans, limits)
 
 
-def verify(folder: Path) -> list[str]:
-    """Compare every closed file with the manifest's checksum; what differs, in words."""
-    manifest = load(folder)
-    if manifest is None:
-        return [f"{folder.name}: no readable manifest; restart the archive to have it made anew"]
-    differing = []
-    for entry in manifest.files:
-        path = folder / entry.name
-        if not path.exists():
-            differing.append(f"{entry.name}: missing; restore it from a backup")
-        elif sha256_of(path) != entry.sha256:
-            differing.append(f"{entry.name}: altered since it was closed; restore it from a backup")
-    return differing
-
-
 def _live_version(folder: Path) -> str | None:
-    manifest = load(folder)
+    manifest = read_manifest(folder)
     if manifest is not None:
         return manifest.derived_version
     versions = {name.version for name, _ in segment_files(folder) if name.version is not None}
@@ -156,7 +141,7 @@ def _follows(known: Ledger, new: Ledger) -> bool:
 
 
 def _missing(folder: Path, present: set[str]) -> DamagedRecording | None:
-    manifest = load(folder)
+    manifest = read_manifest(folder)
     if manifest is None:
         return None
     for entry in manifest.files:

@@ -11,10 +11,10 @@ from hypothesis import strategies as st
 from mcap.data_stream import RecordBuilder
 from mcap.records import Chunk
 
-from services.archive.errors import ArchiveError, DamageKind
-from services.archive.frames import MAGIC, Opcode, read_frames
-from services.archive.reader import open_recording
-from services.archive.segment import scan
+from services.recordings.errors import ArchiveError, DamageKind
+from services.recordings.frames import MAGIC, Opcode, read_frames
+from services.recordings.reader import open_recording
+from services.recordings.segment import scan
 
 CLOSED = "raw.mcap"
 OPEN = "raw.mcap.part"

@@ -13,8 +13,8 @@ from mcap.exceptions import McapError
 from mcap.records import Channel, Chunk
 
 from schemas.archive_layout import END_TOPIC, EPOCH_KEY, SCHEMA_VERSION_KEY, StreamEnd
-from services.archive.frames import Opcode, corrupt
-from services.archive.parameters import LIMITS, ReadLimits
+from services.recordings.frames import Opcode, corrupt
+from services.recordings.limits import LIMITS, ReadLimits
 
 BROKEN = (McapError, ValueError, struct.error, EOFError, KeyError, OverflowError, zstandard.ZstdError)
 """Whatever parsers raise on bytes that are not what they should be."""

@@ -8,13 +8,13 @@ from mcap.reader import NonSeekingReader, make_reader
 from schemas.archive_layout import END_TOPIC, SESSION_METADATA, parse_file_name
 from schemas.health import Gap, Reason
 from schemas.session import SessionDescription
-from services.archive.errors import DamagedRecording, NotARecording
-from services.archive.ledger import Ledger
-from services.archive.manifest import load
 from services.archive.parameters import PARAMETERS
-from services.archive.reader import open_recording, verify
 from services.archive.writer import SessionWriter
 from services.flow.message import DecodeError
+from services.recordings.errors import DamagedRecording, NotARecording
+from services.recordings.folder import read_manifest, verify
+from services.recordings.ledger import Ledger
+from services.recordings.reader import open_recording
 
 
 def names(folder):
@@ -38,7 +38,7 @@ def test_files_are_named_as_the_layout_says_and_verified(recorded, tape):
     folder = recorded([*tape.walk(30), *tape.walk(30, tape.joints)])
     assert names(folder) == ["derived-0.1.0.mcap", "manifest.json", "raw.mcap"]
     assert verify(folder) == []
-    manifest = load(folder)
+    manifest = read_manifest(folder)
     spans = {span.stream: span for entry in manifest.files for span in entry.streams}
     assert {name: (span.first_sequence, span.last_sequence, span.count) for name, span in spans.items()} == {
         "imu/hub": (0, 29, 30),

@@ -21,7 +21,7 @@ from schemas.archive_layout import (
 from schemas.health import Gap
 from schemas.session import SessionDescription
 from schemas.signals import GAP
-from services.archive.chunks import (
+from services.recordings.chunks import (
     BROKEN,
     ChannelFacts,
     ChunkSpan,
@@ -31,10 +31,10 @@ from services.archive.chunks import (
     parse_channel,
     parse_message,
 )
-from services.archive.errors import Damage
-from services.archive.frames import Frame, Opcode, corrupt, read_frames
-from services.archive.ledger import Ledger
-from services.archive.parameters import LIMITS, ReadLimits
+from services.recordings.errors import Damage
+from services.recordings.frames import Frame, Opcode, corrupt, read_frames
+from services.recordings.ledger import Ledger
+from services.recordings.limits import LIMITS, ReadLimits
 
 GAP_TOPIC = f"{GAP.name}/{GAP.producer}"
 _INDEX_HEAD = struct.Struct("<HI")

@@ -5,7 +5,7 @@ from pathlib import Path
 
 
 class ArchiveError(Exception):
-    """Base of everything this service raises on purpose."""
+    """Base of everything that reading or writing recorded sessions raises on purpose."""
 
 
 class NotARecording(ArchiveError):
