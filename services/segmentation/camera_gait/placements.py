@@ -79,6 +79,17 @@ class Placements:
         belt_std = 0.0 if ground == 0.0 else self._belt_std() * apart_s
         return StepLength(along - ground * apart_s, float(np.hypot(np.sqrt(2.0) * p.placement_std_m, belt_std)))
 
+    def width(self, leading: Side, contact_ns: int, trailing_ns: int) -> float | None:
+        """m, how far apart sideways both feet were put, negative where they crossed; None where one was not seen."""
+        now, then = self._placed(leading, contact_ns), self._placed(leading.other, trailing_ns)
+        if now is None or then is None:
+            return None
+        forward = now[2] + then[2]
+        # Forward is up cross right, so right is (-z, x) of it; a belt does not move sideways.
+        to_the_right = np.array([-forward[1], forward[0]]) / np.linalg.norm(forward)
+        across = float((now[1] - then[1]) @ to_the_right)
+        return across if leading is Side.RIGHT else -across
+
     def _placed(self, side: Side, contact_ns: int) -> tuple[float, Array, Array] | None:
         """Mean time, s, place (2,) m and walking direction (2,) of a foot after its contact."""
         p = self._parameters

@@ -36,7 +36,8 @@ class GaitSegmenter:
         self._legs: Legs
         if by_camera:
             self._legs = legs = CameraLegs(camera)
-            self._strides = StrideAssembler(parameters, body, self._history, legs.placements.step)
+            places = legs.placements
+            self._strides = StrideAssembler(parameters, body, self._history, places.step, places.width)
         else:
             self._legs = LegWatch(sources, parameters, body)
             self._strides = StrideAssembler(parameters, body, self._history)

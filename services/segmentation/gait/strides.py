@@ -10,6 +10,7 @@ from schemas.session import Anthropometry
 from schemas.vocabulary import GaitEventKind, Side
 from services.flow.node import State
 from services.segmentation.batch import COLUMNS
+from services.segmentation.gait.circumduction import circumduction
 from services.segmentation.gait.history import HEADING, History, Span
 from services.segmentation.gait.step_length import StepLength, step_length
 from services.segmentation.gait.swing import Contact
@@ -55,13 +56,16 @@ class Leg:
 
 StepMeasure = Callable[[Side, int, int, Span], StepLength | None]
 """The step of a leading foot at its contact, ns, after the other foot's contact, ns, within a stride."""
+WidthMeasure = Callable[[Side, int, int], float | None]
+"""m, how far apart sideways the feet are put in that step."""
 
 
 class StrideAssembler:
     """Takes contacts and holes as they become known, hands out strides in order of their end.
 
     A stride waits `release_delay_s`, so that a contact of the other foot that is noticed later but lies within it
-    is not missed. Steps are measured by the joint angles at the contacts unless there is another measure.
+    is not missed. Steps are measured by the joint angles at the contacts unless there is another measure; their width
+    only where there is a measure, for the angles of inertial sensors do not tell it.
     """
 
     def __init__(
@@ -70,11 +74,13 @@ class StrideAssembler:
         body: Anthropometry,
         history: History,
         measure_step: StepMeasure | None = None,
+        measure_width: WidthMeasure | None = None,
     ) -> None:
         self.parameters = parameters
         self.body = body
         self.history = history
         self._measure_step = measure_step or self._step_by_angles
+        self._measure_width = measure_width
         self.legs = {side: Leg() for side in Side}
         self._waiting: list[tuple[int, int, Side]] = []  # end, start, side
 
@@ -144,7 +150,7 @@ class StrideAssembler:
             start_ns=start_ns,
             toe_off_ns=toe_off_ns,
             opposite_contact_ns=opposite_ns,
-            opposite_toe_off_ns=None,
+            opposite_toe_off_ns=_lifted_before(other, start_ns, opposite_ns),
             end_ns=end_ns,
             stride_time_s=stride_time_s,
             stance_fraction=None if toe_off_ns is None else (toe_off_ns - start_ns) / (end_ns - start_ns),
@@ -153,8 +159,8 @@ class StrideAssembler:
             step_length_std_m=None if step is None else step.std_m,
             stride_length_m=stride_length,
             walking_speed=None if stride_length is None else stride_length / stride_time_s,
-            step_width_m=None,
-            circumduction_m=None,
+            step_width_m=self._width(side, end_ns, opposite_ns),
+            circumduction_m=self._circumduction(side, opposite_ns, end_ns),
             turn=float(turned),
             phase_advance=span.phase_advance(),
             turning=bool(abs(turned) > self.parameters.turn_limit),
@@ -171,6 +177,15 @@ class StrideAssembler:
         if now is None or then is None:
             return None
         return step_length(leading, now, then, span.mean_heading(), self.body, self.parameters.foot_roll_share)
+
+    def _width(self, leading: Side, contact_ns: int, trailing_ns: int | None) -> float | None:
+        if self._measure_width is None or trailing_ns is None:
+            return None
+        return self._measure_width(leading, contact_ns, trailing_ns)
+
+    def _circumduction(self, side: Side, opposite_ns: int | None, end_ns: int) -> float | None:
+        standing = None if opposite_ns is None else self.history.between(opposite_ns, end_ns)
+        return None if standing is None else circumduction(side, standing, self.body)
 
     def _reason(self, side: Side, span: Span, opposite: list[int]) -> str | None:
         """Why the stride does not count; None when it does."""
@@ -207,6 +222,11 @@ class StrideAssembler:
             contacts, toe_offs = list(kept["contacts"]), list(kept["toe_offs"])
             self.legs[side] = Leg(contacts, toe_offs, flaws, kept["bout_start_ns"], kept["strides"])
         self._waiting = [(end, start, Side(side)) for end, start, side in state["waiting"]]
+
+
+def _lifted_before(other: Leg, start_ns: int, contact_ns: int | None) -> int | None:
+    """When the other foot left the ground, on its way to its contact within the stride."""
+    return None if contact_ns is None else next((ns for ns in other.toe_offs if start_ns < ns < contact_ns), None)
 
 
 def _curves(span: Span) -> dict[str, StrideCurve]:

@@ -61,6 +61,16 @@ def test_steps_are_the_same_on_any_ground(belt, drift):
 
 
 @pytest.mark.parametrize("belt", [0.0, SPEED])
+@pytest.mark.parametrize("leading", list(Side))
+def test_feet_are_as_far_apart_sideways_on_any_ground(belt, leading):
+    placements = walked(belt, drift=0.05)
+    contact_ns = round((8.0 if leading is Side.RIGHT else 8.5) * STRIDE_S * 1e9)
+    trailing_ns = contact_ns - round(0.5 * STRIDE_S * 1e9)
+    assert placements.width(leading, contact_ns, trailing_ns) == pytest.approx(0.2, abs=1e-6)
+    assert placements.width(leading, contact_ns, contact_ns + 10**11) is None
+
+
+@pytest.mark.parametrize("belt", [0.0, SPEED])
 def test_the_deviation_covers_noise(belt):
     placements = walked(belt, noise=0.1)
     errors = [

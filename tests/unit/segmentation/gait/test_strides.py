@@ -67,6 +67,47 @@ def test_a_stride_in_full():
     assert len(stride.curves) == DOFS
 
 
+@pytest.mark.parametrize(
+    ("lifted", "told"),
+    [([2.1], 2.1), ([], None), ([1.9, 2.1], 2.1), ([1.9, 2.95], None), ([2.1, 2.95], 2.1)],
+    ids=["in first double support", "not seen", "also before", "before and late", "and again"],
+)
+def test_the_other_foot_leaves_the_ground_before_it_comes_down(lifted, told):
+    assembled = assembler()
+    for at in lifted:
+        toe_off(assembled, Side.RIGHT, at)
+    for at, side in ((2.0, Side.LEFT), (2.5, Side.RIGHT), (3.0, Side.LEFT)):
+        contact(assembled, side, at)
+    [stride] = assembled.release(None)
+    assert stride.opposite_toe_off_ns == (None if told is None else round(told * SECOND))
+
+
+def test_without_the_other_contact_no_other_toe_off():
+    assembled = assembler()
+    toe_off(assembled, Side.RIGHT, 2.1)
+    contact(assembled, Side.LEFT, 2.0)
+    contact(assembled, Side.LEFT, 3.0)
+    [stride] = assembled.release(None)
+    assert stride.opposite_toe_off_ns is stride.circumduction_m is None
+
+
+def test_a_width_only_where_it_is_measured():
+    asked = []
+
+    def width(leading: Side, contact_ns: int, trailing_ns: int) -> float:
+        asked.append((leading, contact_ns, trailing_ns))
+        return 0.12
+
+    plain = assembler()
+    measured = StrideAssembler(PARAMETERS, BODY, plain.history, measure_width=width)
+    for assembled in (plain, measured):
+        for at, side in ((2.0, Side.LEFT), (2.5, Side.RIGHT), (3.0, Side.LEFT)):
+            contact(assembled, side, at)
+    assert [stride.step_width_m for stride in plain.release(None)] == [None]
+    assert [stride.step_width_m for stride in measured.release(None)] == [0.12]
+    assert asked == [(Side.LEFT, 3 * SECOND, round(2.5 * SECOND))]
+
+
 def test_without_a_lock_the_rhythm_has_no_say():
     assembled = assembler(turns_per_s=None)
     for at, side in ((2.0, Side.LEFT), (2.5, Side.RIGHT), (3.0, Side.LEFT)):
