@@ -68,6 +68,7 @@ def test_real_disks_tell_their_free_space(tmp_path):
 def test_every_archived_stream_of_a_session_is_expected(description):
     computed = {
         "calibration/estimation",
+        "data_quality/estimation",
         "joint_state/estimation",
         "rhythm/estimation",
         "learned_rhythm/estimation",
