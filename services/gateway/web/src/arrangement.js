@@ -63,7 +63,7 @@ export const isExercise = (task) => EXERCISES.includes(task);
  * @param {{sensors: {segment: string}[], cameras: {name: string}[], task: string}} session
  */
 export function arrangementOf({ sensors, cameras = [], task }) {
-  const common = { counted: isExercise(task), timed: task === "timed_up_and_go" };
+  const common = { counted: isExercise(task) };
   if (cameras.length > 0) {
     const wholeBody = WHOLE_BODY[task] ?? WHOLE_BODY.walk;
     return { ...common, charts: wholeBody.charts, sides: SIDES, views: ROOM_VIEWS, wholeBody, legs: null };

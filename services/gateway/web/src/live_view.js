@@ -10,13 +10,13 @@ import { KneePanel } from "./knee_panel.js";
 import { LiveSocket } from "./live_socket.js";
 import { LiveNumbers } from "./live_numbers.js";
 import { PatientLink } from "./patient_link.js";
-import { PhaseStrip } from "./phase_strip.js";
 import { RepetitionCounter } from "./repetition_counter.js";
 import { SensorList } from "./sensor_list.js";
 import { SessionControls } from "./session_controls.js";
 import { Skeleton2d } from "./skeleton2d.js";
 import { Skeleton3d, canDraw3d } from "./skeleton3d.js";
 import { clock } from "./units.js";
+import { stripOf } from "./task_strips.js";
 import { SIDES } from "./vectors.js";
 import { STALE_S, lastData, misplacedText, stateOf } from "./words.js";
 
@@ -58,7 +58,7 @@ export class LiveView {
     this.sensorList = new SensorList();
     this.views = el("div", { class: "views", role: "group", "aria-label": "View from" });
     this.curves = el("div", { class: "curves" });
-    this.strip = new PhaseStrip();
+    this.strip = null;
     this.counter = new RepetitionCounter();
     this.strides = el("section", { class: "panel numbers-panel", "aria-label": "Numbers" }, this.numbers.node);
     this.key = el("p", { class: "key" });
@@ -81,7 +81,6 @@ export class LiveView {
       (this.live = el(
         "div",
         { class: "live" },
-        this.strip.node,
         el(
           "section",
           { class: "panel body-panel", "aria-label": "Skeleton" },
@@ -146,7 +145,7 @@ export class LiveView {
       else if (this.camera) this.skeleton.clear();
       for (const chart of this.charts) chart.add(pose, pose.trail);
       for (const panel of this.panels) panel.add(pose, pose.trail);
-      this.strip.show(pose.at_s);
+      this.strip?.show(pose.at_s);
       this.numbers.onPose(pose);
       this.sensorList.show(pose.sensors, this.segments);
       this.tick();
@@ -160,10 +159,11 @@ export class LiveView {
       for (const chart of this.charts) chart.rolling.mark(event);
     },
     stride(stride) {
+      this.strip?.onStride?.(stride);
       this.numbers.onStride(stride);
     },
     task_phase(phase) {
-      this.strip.onPhase(phase);
+      this.strip?.onPhase(phase);
     },
     repetition(repetition) {
       this.counter.onRepetition(repetition);
@@ -176,8 +176,9 @@ export class LiveView {
   /** Once it is known what is worn and what is to be done: show that, and nothing that cannot be. */
   arrange(session) {
     if (this.arranged) return;
-    const { charts, sides, views, counted, timed, legs, wholeBody } = (this.arranged = arrangementOf(session));
-    this.strip.node.hidden = !timed;
+    const { charts, sides, views, counted, legs, wholeBody } = (this.arranged = arrangementOf(session));
+    this.strip = stripOf(session);
+    if (this.strip) this.live.prepend(this.strip.node);
     this.counter.node.hidden = !counted;
     this.strides.hidden = counted;
     this.sensorList.node.hidden = session.sensors.length === 0;
@@ -244,7 +245,7 @@ export class LiveView {
     this.sensorList.tick(stale);
     this.numbers.tick(stale);
     for (const panel of this.panels) panel.tick(stale);
-    this.strip.node.classList.toggle("stale", stale);
+    this.strip?.node.classList.toggle("stale", stale);
   }
 
   /** What is worn otherwise than declared or not calibrated, unless the estimator's own message says what to do. */

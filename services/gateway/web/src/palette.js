@@ -16,6 +16,11 @@ export const PHASE_COLOURS = {
   turn: "#FBEBC8",
   walk_back: "#DDEEDF",
   turn_to_sit: "#E6DDF0",
+  walk: "#DDEEDF",
+  rest: "#E6DDF0",
+  run_up: "#E6EBED",
+  timed_zone: "#DDEEDF",
+  run_out: "#E6EBED",
 };
 export const GHOST = "#DDE4E7";
 

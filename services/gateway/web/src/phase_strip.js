@@ -1,14 +1,22 @@
-// A timed up and go as it is done: five parts, the running one counting, and the total.
+// A timed test as it is done: its parts in order, the running one counting, and the time that is the test's result.
 import { el, say } from "./dom.js";
 import { number } from "./units.js";
-import { PHASES } from "./words.js";
+import { PHASES, TASKS, ZONE_PHASES } from "./words.js";
+
+const DONE_STEPWISE = {
+  timed_up_and_go: { parts: PHASES, first: "sit_to_stand", last: "turn_to_sit", result: "Total" },
+  ten_metre_walk: { parts: ZONE_PHASES, first: "timed_zone", last: "timed_zone", result: "Timed zone" },
+};
 
 export class PhaseStrip {
-  constructor() {
+  /** @param {"timed_up_and_go"|"ten_metre_walk"} task */
+  constructor(task) {
+    this.task = task;
+    this.of = DONE_STEPWISE[task];
     this.phases = new Map();
     this.attempt = 0;
-    this.title = el("h2", {}, "Timed up and go");
-    this.parts = Object.entries(PHASES).map(([phase, name]) => {
+    this.title = el("h2", {}, TASKS[task]);
+    this.parts = Object.entries(this.of.parts).map(([phase, name]) => {
       const time = el("span", { class: "part-time" }, "–");
       return { phase, time, node: el("li", { "data-state": "waiting" }, el("span", {}, name), time) };
     });
@@ -17,10 +25,10 @@ export class PhaseStrip {
     this.spoken = el("p", { class: "unseen", "aria-live": "polite" });
     this.node = el(
       "section",
-      { class: "panel strip", "aria-label": "Timed up and go", hidden: true },
+      { class: "panel strip", "aria-label": TASKS[task] },
       this.title,
       el("ol", { class: "parts" }, ...this.parts.map((part) => part.node)),
-      el("div", { class: "strip-total" }, el("span", {}, "Total"), this.total, this.spread),
+      el("div", { class: "strip-total" }, el("span", {}, this.of.result), this.total, this.spread),
       this.spoken,
     );
   }
@@ -31,8 +39,7 @@ export class PhaseStrip {
     if (phase.attempt > this.attempt) this.phases.clear();
     this.attempt = phase.attempt;
     this.phases.set(phase.phase, phase);
-    this.node.hidden = false;
-    say(this.title, this.attempt === 0 ? "Timed up and go" : `Timed up and go, attempt ${this.attempt + 1}`);
+    say(this.title, this.attempt === 0 ? TASKS[this.task] : `${TASKS[this.task]}, attempt ${this.attempt + 1}`);
     this.show(phase.end_s ?? phase.start_s);
     say(this.spoken, this.words());
   }
@@ -44,16 +51,21 @@ export class PhaseStrip {
       node.dataset.state = stateOfPart(known);
       say(time, known ? seconds((known.end_s ?? Math.max(now_s, known.start_s)) - known.start_s) : "–");
     }
-    const { from, to, spread_s, given_up } = extentOf([...this.phases.values()]);
+    const { from, to, spread_s, given_up } = this.extent();
     say(this.total, from === null || given_up ? "–" : seconds((to ?? Math.max(now_s, from)) - from));
     say(this.spread, given_up ? "given up" : spread_s === null ? "" : `± ${number(2 * spread_s, 1)} s`);
   }
 
   words() {
     const running = this.parts.find(({ node }) => node.dataset.state === "running");
-    if (running) return PHASES[running.phase];
-    if (extentOf([...this.phases.values()]).given_up) return "Given up";
-    return this.phases.has("turn_to_sit") ? `Done in ${this.total.textContent}` : "";
+    if (running) return this.of.parts[running.phase];
+    const { to, given_up } = this.extent();
+    if (given_up) return "Given up";
+    return to === null ? "" : `${this.of.result} ${this.total.textContent}`;
+  }
+
+  extent() {
+    return extentOf([...this.phases.values()], this.of);
   }
 }
 
@@ -67,10 +79,13 @@ const seconds = (value) => `${number(value, 1)} s`;
 /** A part that has an end but no deviation of it was not seen to its end. */
 export const isGivenUp = (phase) => phase.end_s !== null && phase.end_std_s === null;
 
-/** From the first start to the end of the last part; `to` is null, and so is the deviation, until that has ended. */
-export function extentOf(phases) {
-  const first = phases.find((each) => each.phase === "sit_to_stand") ?? phases[0];
-  const last = phases.find((each) => each.phase === "turn_to_sit");
+/**
+ * From the start of the `first` part to the end of the `last`; `to` is null, and so is the deviation, until that has
+ * ended. A timed up and go that was seen late counts from what was seen first; a timed zone does not.
+ */
+export function extentOf(phases, { first: begin, last: finish } = DONE_STEPWISE.timed_up_and_go) {
+  const first = phases.find((each) => each.phase === begin) ?? (begin === finish ? undefined : phases[0]);
+  const last = phases.find((each) => each.phase === finish);
   const given_up = phases.some(isGivenUp);
   if (!first) return { from: null, to: null, spread_s: null, given_up };
   if (!last || last.end_s === null || given_up) return { from: first.start_s, to: null, spread_s: null, given_up };

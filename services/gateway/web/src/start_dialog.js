@@ -1,5 +1,6 @@
 // Start a session: what, how fast, by which estimator, for whom.
 import { get, post } from "./api.js";
+import { ConditionsForm, field } from "./conditions_form.js";
 import { el, fill } from "./dom.js";
 import { TASKS } from "./words.js";
 
@@ -25,35 +26,26 @@ const WORN = {
 const FITTING = { camera_and_sensors: ["camera_and_sensors", "camera", "lower_body"] };
 const SEEN_BY_CAMERA = ["walk", "squat", "stepping", "trunk_tilt_sagittal", "trunk_tilt_frontal"];
 const POSSIBLE = {
-  lower_body: ["walk", "timed_up_and_go"],
+  lower_body: ["walk", "six_minute_walk", "ten_metre_walk", "timed_up_and_go", "marching"],
   knee: ["walk", "timed_up_and_go", "knee_flexion"],
   camera: SEEN_BY_CAMERA,
   camera_and_sensors: SEEN_BY_CAMERA,
 };
 const asTheSourceSays = () => el("option", { value: "" }, "As the source says");
-const TIMED = "timed_up_and_go";
-const WALKWAY_M = 3;
 
 export class StartDialog {
   constructor({ onStarted }) {
     this.onStarted = onStarted;
     this.source = el("select", { id: "source", required: true, onchange: () => this.fit() });
     this.task = el("select", { id: "task", onchange: () => this.fit() });
-    this.walkway = el("input", {
-      id: "walkway",
-      type: "number",
-      min: 0.5,
-      max: 100,
-      step: 0.1,
-      placeholder: `as the source says, else ${WALKWAY_M} m`,
-    });
-    this.walkwayField = field("Walkway, m from the chair to the turn", this.walkway);
+    this.how = new ConditionsForm();
     this.speed = el("select", { id: "speed" }, ...SPEEDS.map(([value, name]) => el("option", { value }, name)));
     this.estimator = el("select", { id: "estimator" });
     this.path = el("select", { id: "walk-path" }, ...PATHS.map(([value, name]) => el("option", { value }, name)));
     this.speedField = field("Speed", this.speed);
     this.pathField = field("Path", this.path);
-    this.patient = el("select", { id: "patient" });
+    this.patient = el("select", { id: "patient", onchange: () => this.tellSide() });
+    this.side = el("p", { class: "quiet", role: "status", hidden: true });
     this.problem = el("p", { class: "banner", role: "alert", hidden: true });
     this.go = el("button", { class: "primary", type: "submit" }, "Start");
     const form = el(
@@ -62,11 +54,13 @@ export class StartDialog {
       el("h2", {}, "Start a session"),
       field("Source", this.source),
       field("Task", this.task),
-      this.walkwayField,
+      this.how.node,
+      field("Patient", this.patient),
+      this.side,
+      this.how.worn,
       this.speedField,
       field("Estimator", this.estimator),
       this.pathField,
-      field("Patient", this.patient),
       this.problem,
       el(
         "div",
@@ -107,16 +101,25 @@ export class StartDialog {
     );
     this.sources = new Map(sources.map((source) => [source.id, source]));
     this.estimators = estimators;
+    this.paretic = new Map(patients.map((patient) => [patient.code, patient.paretic_side]));
     fill(
       this.patient,
       el("option", { value: "" }, "assign later"),
       ...patients.map((patient) => el("option", { value: patient.code }, patient.code)),
     );
     this.fit();
+    this.tellSide();
   }
 
-  /** Offer what fits the source: tasks and estimators for what measures, where that is known; a walkway for a timed
-   * test, a path for sensors, and no speed for what is there now. */
+  /** The more affected side is the patient's, not the test's. */
+  tellSide() {
+    const side = this.paretic.get(this.patient.value);
+    this.side.textContent = side ? `More affected side, from the patient's record: ${side}.` : "";
+    this.side.hidden = !side;
+  }
+
+  /** Offer what fits the source: tasks and estimators for what measures, where that is known; what a test needs to be
+   * told, a path for sensors, and no speed for what is there now. */
   fit() {
     const source = this.sources?.get(this.source.value);
     const worn = source?.worn ?? null;
@@ -124,7 +127,7 @@ export class StartDialog {
     offerOptions(this.estimator, [asTheSourceSays(), ...groups.map((group) => this.estimatorGroup(group))]);
     const tasks = Object.entries(TASKS).filter(([task]) => worn === null || POSSIBLE[worn].includes(task));
     offerOptions(this.task, [asTheSourceSays(), ...tasks.map(([task, name]) => el("option", { value: task }, name))]);
-    this.walkwayField.hidden = (this.task.value || source?.task) !== TIMED;
+    this.how.fit(this.task.value || source?.task);
     this.pathField.hidden = worn === "camera";
     this.speedField.hidden = source?.kind === "device";
   }
@@ -146,7 +149,8 @@ export class StartDialog {
         estimator: this.estimator.value || null,
         walk_path: this.pathField.hidden ? null : this.path.value || null,
         task: this.task.value || null,
-        walkway_m: this.walkwayField.hidden || this.walkway.value === "" ? null : Number(this.walkway.value),
+        walkway_m: this.how.walkway_m,
+        conditions: this.how.conditions,
         patient: this.patient.value || null,
       });
       this.node.close();
@@ -170,5 +174,3 @@ function offerOptions(select, options) {
   fill(select, ...options);
   if ([...select.options].some((option) => option.value === chosen)) select.value = chosen;
 }
-
-const field = (name, input) => el("label", { class: "field", for: input.id }, el("span", {}, name), input);

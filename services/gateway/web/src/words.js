@@ -152,6 +152,12 @@ export const PHASES = {
   turn_to_sit: "Turn and sit",
 };
 
+/** The parts of a ten-metre walk, in order. */
+export const ZONE_PHASES = { run_up: "Run-up", timed_zone: "Timed zone", run_out: "Run-out" };
+
+/** What goes on in a six-minute walk. */
+export const WALK_PHASES = { walk: "Walking", turn: "Turning", rest: "Resting" };
+
 const MISPLACED = {
   other_leg: {
     word: () => "Sides may be swapped",
