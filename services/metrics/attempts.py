@@ -6,12 +6,12 @@ from collections.abc import Callable
 from schemas.metrics import Metric
 from schemas.tasks import TaskPhase
 from schemas.vocabulary import TASK_PHASES, Task, TaskPhaseKind
+from services.definitions.definition import Definition
+from services.definitions.timed_up_and_go import TUG_ABORTED, TUG_COMPLETED, TUG_MEANS, Attempt, Measured
 from services.flow.node import State
 from services.metrics import summary
-from services.metrics.definitions import Definition
 from services.metrics.moments import Moments
 from services.metrics.parameters import MetricsParameters
-from services.metrics.tug_definitions import TUG_ABORTED, TUG_COMPLETED, TUG_MEANS, Attempt, Measured
 
 PARTS = TASK_PHASES[Task.TIMED_UP_AND_GO]
 NO_ATTEMPT = "no completed attempt"

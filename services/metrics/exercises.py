@@ -5,10 +5,8 @@ from collections.abc import Iterable
 from schemas.metrics import Metric
 from schemas.tasks import Repetition
 from schemas.vocabulary import Side, Task
-from services.flow.node import State
-from services.metrics import summary
-from services.metrics.definitions import Definition
-from services.metrics.exercise_definitions import (
+from services.definitions.definition import Definition
+from services.definitions.exercises import (
     EXERCISE_MEANS,
     JOINT_RANGES,
     JOINT_RATIOS,
@@ -16,9 +14,11 @@ from services.metrics.exercise_definitions import (
     RANGE_RATIO,
     joint_range,
 )
+from services.definitions.repetitions import RANGE
+from services.flow.node import State
+from services.metrics import summary
 from services.metrics.moments import Moments
 from services.metrics.parameters import MetricsParameters
-from services.metrics.repetition_definitions import RANGE
 from services.metrics.repetitions import NOUN, MovementTotals
 
 SIDES_OF: dict[Task, tuple[Side | None, ...]] = {

@@ -47,7 +47,7 @@ class MetricsNode:
         self._parameters = parameters
         self._known = description.known_rhythms
         self._learned: LearnedRhythm | None = None
-        self._totals = SessionTotals()
+        self._totals = SessionTotals(description.conditions.paretic_side)
         self._is_exercise = description.task is Task.KNEE_FLEXION or description.task in SIDES_OF
         self._walks = description.task not in SIDES_OF
         self._repetitions = _repetitions(description, parameters)

@@ -5,11 +5,7 @@ from collections.abc import Iterable
 from schemas.metrics import Metric
 from schemas.tasks import Repetition
 from schemas.vocabulary import Side
-from services.flow.node import State
-from services.metrics import summary
-from services.metrics.moments import Moments
-from services.metrics.parameters import MetricsParameters
-from services.metrics.repetition_definitions import (
+from services.definitions.repetitions import (
     RANGE,
     RANGE_CV,
     RANGE_SD,
@@ -21,6 +17,10 @@ from services.metrics.repetition_definitions import (
     RepetitionMeans,
     range_of,
 )
+from services.flow.node import State
+from services.metrics import summary
+from services.metrics.moments import Moments
+from services.metrics.parameters import MetricsParameters
 from services.metrics.trend import Trend
 
 NOUN = "repetitions"

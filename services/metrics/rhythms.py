@@ -9,7 +9,8 @@ from schemas.metrics import Metric
 from schemas.rhythm import KnownRhythm, LearnedJoint, LearnedRhythm
 from schemas.vocabulary import Side
 from services.biomech.rhythm.comparison import Comparison, Leg, compare_legs
-from services.metrics.definitions import COMPARED_WITH, SIDE_DISTANCE, SIDE_SHAPE, SIDE_TIMING, Definition
+from services.definitions.definition import Definition
+from services.definitions.rhythm import COMPARED_WITH, SIDE_DISTANCE, SIDE_SHAPE, SIDE_TIMING
 from services.metrics.summary import shown, withheld
 
 NOT_YET = "compared at the end of the session"

@@ -5,24 +5,22 @@ from dataclasses import dataclass
 from schemas.gait import Stride
 from schemas.metrics import MeanCurve, Metric
 from schemas.vocabulary import Side
-from services.flow.node import State
-from services.metrics import summary
-from services.metrics.definitions import (
+from services.definitions.definition import CV_SUFFIX, SD_SUFFIX
+from services.definitions.strides import STRIDE_METRICS
+from services.definitions.variability import (
     COUNTED,
     COUNTS,
-    CV_SUFFIX,
     ENDS,
-    RATIOS,
-    RATIOS_OF,
     REJECTED,
-    SD_SUFFIX,
-    STRIDE_METRICS,
     TURNING,
     VARIABILITY,
     VARIABILITY_OF,
 )
+from services.flow.node import State
+from services.metrics import summary
 from services.metrics.parameters import MetricsParameters
 from services.metrics.sums import Sums, sides_of
+from services.metrics.symmetry import symmetry_metrics
 
 _ROWS = {definition.name: definition for definition in (*STRIDE_METRICS, *VARIABILITY)}
 
@@ -44,7 +42,8 @@ class SessionTotals:
     The size does not grow with the session.
     """
 
-    def __init__(self) -> None:
+    def __init__(self, paretic_side: Side | None = None) -> None:
+        self._paretic_side = paretic_side
         self._steady = Sums()
         self._ends = Sums()
         self._newest: dict[Side, Newest | None] = dict.fromkeys(Side)
@@ -70,11 +69,8 @@ class SessionTotals:
             for definition in STRIDE_METRICS
             for side in sides_of(definition)
         }
-        ratios = [
-            summary.ratio_metric(definition, means[name, Side.LEFT.value], means[name, Side.RIGHT.value])
-            for name, definition in zip(RATIOS_OF, RATIOS, strict=True)
-        ]
-        return [*means.values(), *ratios, *_variability(sums, parameters), *self._numbers(sums, left_out)]
+        symmetry = symmetry_metrics(means, self._paretic_side)
+        return [*means.values(), *symmetry, *_variability(sums, parameters), *self._numbers(sums, left_out)]
 
     def curves(self, parameters: MetricsParameters) -> list[MeanCurve]:
         """Mean curves of the joints that were seen in enough strides."""

@@ -3,7 +3,7 @@
 import math
 
 from schemas.metrics import MeanCurve, Metric, TrustGrade
-from services.metrics.definitions import Definition
+from services.definitions.definition import Definition
 from services.metrics.moments import Moments
 
 
@@ -91,15 +91,17 @@ def variability_metrics(
     return first, shown(cv, side, value / mean, None, value / mean * error, n)
 
 
-def ratio_metric(definition: Definition, left: Metric, right: Metric) -> Metric:
-    """Larger / smaller of two means a and b; error: ratio sqrt((s_a / a)^2 + (s_b / b)^2), to first order."""
-    strides = min(left.strides, right.strides)
-    if left.value is None or right.value is None:
-        return withheld(definition, None, strides, left.withheld_because or right.withheld_because or "")
-    if left.value <= 0 or right.value <= 0:
+def ratio_metric(definition: Definition, first: Metric, second: Metric, larger_first: bool = True) -> Metric:
+    """First / second of two means a and b, or larger / smaller; error: ratio sqrt((s_a / a)^2 + (s_b / b)^2)."""
+    strides = min(first.strides, second.strides)
+    if first.value is None or second.value is None:
+        return withheld(definition, None, strides, first.withheld_because or second.withheld_because or "")
+    if first.value <= 0 or second.value <= 0:
         return withheld(definition, None, strides, "the mean of a side is not positive")
-    ratio = max(left.value, right.value) / min(left.value, right.value)
-    relative = math.hypot((left.mean_std or 0.0) / left.value, (right.mean_std or 0.0) / right.value)
+    ratio = first.value / second.value
+    if larger_first:
+        ratio = max(ratio, 1.0 / ratio)
+    relative = math.hypot((first.mean_std or 0.0) / first.value, (second.mean_std or 0.0) / second.value)
     return shown(definition, None, ratio, None, ratio * relative, strides)
 
 

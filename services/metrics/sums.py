@@ -3,12 +3,15 @@
 import numpy as np
 
 from schemas.gait import CURVE_POINTS, Stride
-from schemas.vocabulary import LOWER_BODY, Side
+from schemas.vocabulary import ANKLES, LOWER_BODY, WHOLE_BODY, Side
+from services.definitions.definition import Definition
+from services.definitions.strides import STRIDE_METRICS
 from services.flow.node import State
-from services.metrics.definitions import STRIDE_METRICS, Definition
 from services.metrics.moments import Moments
 
 HEADING = "pelvis_rotation"
+CURVES = tuple(dict.fromkeys(dof.name for dof in (*LOWER_BODY, *WHOLE_BODY, *ANKLES)))
+"""Joints of every body model; in a session those of its own are seen."""
 
 
 def sides_of(definition: Definition) -> tuple[str | None, ...]:
@@ -28,7 +31,7 @@ class Sums:
         self.scalars = {
             (definition.name, side): Moments.empty() for definition in STRIDE_METRICS for side in sides_of(definition)
         }
-        self.curves = {dof.name: Moments.empty(CURVE_POINTS) for dof in LOWER_BODY}
+        self.curves = {name: Moments.empty(CURVE_POINTS) for name in CURVES}
         self.strides = dict.fromkeys(Side, 0)
 
     def add(self, stride: Stride) -> None:
@@ -56,7 +59,7 @@ class Sums:
         """All moments and counts."""
         return {
             "scalars": [[name, side, moments.snapshot()] for (name, side), moments in self.scalars.items()],
-            "curves": {name: moments.snapshot() for name, moments in self.curves.items()},
+            "curves": {name: moments.snapshot() for name, moments in self.curves.items() if moments.count},
             "strides": {side.value: number for side, number in self.strides.items()},
         }
 

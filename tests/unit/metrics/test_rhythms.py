@@ -8,8 +8,8 @@ import pytest
 from schemas.rhythm import KnownRhythm, LearnedJoint, LearnedRhythm
 from schemas.signals import LEARNED_RHYTHM, STRIDE
 from schemas.vocabulary import Side
+from services.definitions.rhythm import RHYTHMS
 from services.flow.message import Envelope, Message, Stream
-from services.metrics.definitions import RHYTHMS
 from services.metrics.node import build
 from services.metrics.rhythms import rhythm_metrics
 

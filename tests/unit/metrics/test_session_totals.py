@@ -4,7 +4,9 @@ import numpy as np
 import pytest
 
 from schemas.vocabulary import Side
-from services.metrics.definitions import METRICS, RHYTHMS
+from services.definitions.rhythm import RHYTHMS
+from services.definitions.symmetry import PARETIC_RATIOS
+from services.definitions.table import WALK
 from services.metrics.parameters import MetricsParameters
 from services.metrics.session_totals import SessionTotals, sides_of
 
@@ -32,7 +34,7 @@ def totals(stride):
 
 def test_every_row_of_the_table_in_its_order(totals):
     for built in (totals([], []), totals([{}] * 12, [{}] * 12)):
-        expected = [(d.name, side) for d in METRICS if d not in RHYTHMS for side in sides_of(d)]
+        expected = [(d.name, side) for d in WALK if d not in (*RHYTHMS, *PARETIC_RATIOS) for side in sides_of(d)]
         assert [(m.name, m.side) for m in built.metrics(PARAMETERS)] == expected
         assert all((m.value is None) == (m.withheld_because is not None) for m in built.metrics(PARAMETERS))
 

@@ -2,8 +2,8 @@
 
 from schemas.tasks import Repetition
 from schemas.vocabulary import Side, Task
-from services.metrics.definitions import RATIO_SUFFIX, Definition
-from services.metrics.repetition_definitions import PEAK_VELOCITY_MEAN, RANGE, RANGE_MEAN, RepetitionMeans
+from services.definitions.definition import RATIO_SUFFIX, Definition
+from services.definitions.repetitions import PEAK_VELOCITY_MEAN, RANGE, RANGE_MEAN, RepetitionMeans
 
 EXERCISE_MEANS: RepetitionMeans = (
     RANGE_MEAN,

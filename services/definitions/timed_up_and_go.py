@@ -4,7 +4,7 @@ from collections.abc import Callable, Mapping
 
 from schemas.tasks import TaskPhase
 from schemas.vocabulary import TaskPhaseKind
-from services.metrics.definitions import Definition
+from services.definitions.definition import Definition
 
 Attempt = Mapping[TaskPhaseKind, TaskPhase]
 """The ended phases of one attempt."""

@@ -3,7 +3,7 @@
 from collections.abc import Callable
 
 from schemas.tasks import Repetition
-from services.metrics.definitions import CV_SUFFIX, SD_SUFFIX, Definition
+from services.definitions.definition import CV_SUFFIX, SD_SUFFIX, Definition
 
 
 def _angles(repetition: Repetition) -> tuple[float, float, float]:
