@@ -88,6 +88,10 @@ def _before_a_camera(motion: str, title: str, task: Task) -> Source:
     return Source(f"synthetic:{motion}?person=2", title, "synthetic", None, "camera", task)
 
 
+def _on_foot(what: str, title: str, task: Task) -> Source:
+    return Source(f"synthetic:{what}", title, "synthetic", None, "lower_body", task)
+
+
 SYNTHETIC_SOURCES = (
     _walker("speed=1.2&seed=1", "Walk, comfortable speed"),
     _walker("speed=0.7&seed=2", "Walk, slow"),
@@ -109,6 +113,10 @@ SYNTHETIC_SOURCES = (
         "knee",
         Task.TIMED_UP_AND_GO,
     ),
+    _on_foot("six_minutes?rests=1&seed=6", "Six-minute walk with a rest, 30 m corridor", Task.SIX_MINUTE_WALK),
+    _on_foot("six_minutes?duration=60&corridor=10&seed=6", "One-minute walk, 10 m corridor", Task.SIX_MINUTE_WALK),
+    _on_foot("ten_metres?seed=7", "Ten-metre walk, three times from standing", Task.TEN_METRE_WALK),
+    _on_foot("march?seed=8", "Marching on the spot", Task.MARCHING),
     Source("synthetic:knee?seed=2", "Seated knee extension, right knee", "synthetic", 90.0, "knee", Task.KNEE_FLEXION),
     _before_a_camera("squat", "Squats with the arms raised, camera", Task.SQUAT),
     _before_a_camera("steps", "Stepping on the spot, camera", Task.STEPPING),

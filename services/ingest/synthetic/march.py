@@ -10,6 +10,7 @@ import math
 
 import numpy as np
 
+from schemas.vocabulary import Task
 from services.ingest.synthetic.curves import JOINT_CURVES, GaitCurves, series_through
 from services.ingest.synthetic.gait import BALL_FROM_ANKLE, Gait
 from services.ingest.synthetic.jets import Array, Jet
@@ -90,6 +91,7 @@ class SyntheticMarch(SyntheticSession):
     """Quiet standing, then marching on the spot."""
 
     protocol = "quiet standing, then marching on the spot"
+    task = Task.MARCHING
 
     def __init__(self, parameters: MarchParameters) -> None:
         rng = np.random.default_rng([parameters.seed, 4])

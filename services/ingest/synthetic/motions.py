@@ -4,6 +4,8 @@ from collections.abc import Callable
 
 from services.ingest.errors import UnknownSource
 from services.ingest.synthetic.block import SimulatedSession
+from services.ingest.synthetic.corridor import SyntheticSixMinutes, SyntheticTenMetres
+from services.ingest.synthetic.corridor_parameters import SixMinutesParameters, TenMetresParameters
 from services.ingest.synthetic.knee_flexion import SyntheticKnee
 from services.ingest.synthetic.march import SyntheticMarch
 from services.ingest.synthetic.parameters import KneeParameters, MarchParameters, TugParameters, WalkParameters
@@ -29,6 +31,8 @@ MOTIONS: dict[str, Callable[[str], SimulatedSession]] = {
     "walk": lambda options: SyntheticWalk(WalkParameters.parse(options)),
     "march": lambda options: SyntheticMarch(MarchParameters.parse(options)),
     "knee": lambda options: SyntheticKnee(KneeParameters.parse(options)),
+    "six_minutes": lambda options: SyntheticSixMinutes(SixMinutesParameters.parse(options)),
+    "ten_metres": lambda options: SyntheticTenMetres(TenMetresParameters.parse(options)),
     "tug": lambda options: SyntheticTug(TugParameters.parse(options)),
     "squat": lambda options: _task(SquatParameters.parse(options)),
     "steps": lambda options: _task(StepsParameters.parse(options)),

@@ -79,11 +79,7 @@ def test_sources_and_estimators_say_what_is_worn(client):
                for each in offer["sources"] if each["worn"]}  # fmt: skip
     assert fitting["knee"] == set(KNEE_ESTIMATORS)
     assert fitting["lower_body"] == set(LOWER_BODY_ESTIMATORS)
-    assert {source["task"] for source in offer["sources"] if source["kind"] == "synthetic"} == set(Task) - {
-        Task.SIX_MINUTE_WALK,
-        Task.TEN_METRE_WALK,
-        Task.MARCHING,
-    }
+    assert {source["task"] for source in offer["sources"] if source["kind"] == "synthetic"} == set(Task)
     assert {source["worn"] for source in offer["sources"] if source["kind"] == "recording"} == {None}
 
 
