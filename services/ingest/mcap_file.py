@@ -4,29 +4,14 @@ The archive repairs and verifies; this driver only replays, so it takes what it 
 """
 
 import heapq
-import json
 import re
-import struct
-import zlib
 from collections.abc import Iterator
 from dataclasses import dataclass, field
 from operator import attrgetter
 from pathlib import Path
 from typing import NamedTuple
 
-from mcap.exceptions import McapError
-from mcap.records import Channel, Chunk, McapRecord, Message, Metadata
-from mcap.stream_reader import StreamReader, breakup_chunk
-from pydantic import ValidationError
-
-from schemas.archive_layout import (
-    DESCRIPTION_FIELD,
-    EPOCH_KEY,
-    SESSION_METADATA,
-    SESSION_TOPIC,
-    captured_ns,
-    parse_file_name,
-)
+from schemas.archive_layout import captured_ns
 from schemas.health import Reason, Rejection
 from schemas.imu import ImuBatch, ReferenceBatch
 from schemas.payload import Payload
@@ -39,9 +24,10 @@ from services.flow.rejections import RejectionCounter
 from services.ingest.driver import SourceMessage
 from services.ingest.errors import EmptyFile, MissingFile, UnreadableFile, place
 from services.ingest.identity import Identity
-
-MOST_RECORD_BYTES = 64 * 1024 * 1024
-"""A single record or unpacked chunk beyond it is damage, or meant to exhaust the memory."""
+from services.recordings.chunks import RawMessage, read_messages
+from services.recordings.errors import Damage
+from services.recordings.folder import segment_files
+from services.recordings.segment import SegmentScan, scan
 
 MOST_FILE_BYTES = 4 * 1024 * 1024 * 1024
 """The raw samples are held in memory; longer sessions lie in several files."""
@@ -49,9 +35,6 @@ MOST_FILE_BYTES = 4 * 1024 * 1024 * 1024
 _RAW_TOPICS = tuple(f"{signal.name}/" for signal in (IMU, SKELETON, REFERENCE))
 
 _SOURCE_NAME = re.compile(r"[A-Za-z0-9_-]{1,64}")
-
-_BROKEN = (McapError, ValueError, EOFError, struct.error, KeyError, OverflowError, zlib.error, MemoryError)
-"""Whatever the parser raises on bytes that are not what they should be."""
 
 
 class _Stored(NamedTuple):
@@ -69,14 +52,11 @@ class _Contents:
 
     description: SessionDescription | None = None
     stored: dict[str, dict[tuple[int, int], _Stored]] = field(default_factory=dict)
-    channels: dict[int, Channel] = field(default_factory=dict)
 
 
 def raw_files(folder: Path) -> list[Path]:
     """The raw files of a session folder, oldest first; those still open or left behind included."""
-    named = [(parse_file_name(path.name), path) for path in folder.iterdir()]
-    raw = [(name, path) for name, path in named if name is not None and name.kind == "raw"]
-    return [path for _, path in sorted(raw, key=lambda entry: (entry[0].number, entry[0].part))]
+    return [path for name, path in segment_files(folder) if name.kind == "raw"]
 
 
 class McapRecording:
@@ -153,53 +133,36 @@ class McapRecording:
         return False
 
     def _read(self, path: Path) -> None:
-        self._contents.channels = {}
         try:
             if path.stat().st_size > MOST_FILE_BYTES:
                 raise UnreadableFile(f"{place(path)}: larger than {MOST_FILE_BYTES} bytes; no recording is")
-            with path.open("rb") as file:
-                reader = StreamReader(file, emit_chunks=True, validate_crcs=True, record_size_limit=MOST_RECORD_BYTES)
-                for record in reader.records:
-                    self._take(record)
+            whole = self._take(scan(path))
         except FileNotFoundError as error:
             raise MissingFile(f"no file {path}") from error
         except OSError as error:
             raise UnreadableFile(f"{place(path)}: {error}") from error
-        except UnreadableFile:
-            raise
-        except _BROKEN:
+        except Damage:
+            whole = False
+        if not whole:
             # What was taken so far stands: the samples before the damage carry their own checksums.
             self._rejected.add(path.name, Reason.UNDECODABLE)
 
-    def _take(self, record: McapRecord) -> None:
-        match record:
-            case Chunk():
-                if record.uncompressed_size > MOST_RECORD_BYTES:
-                    raise ValueError("a chunk unpacks to more than it may")
-                for inner in breakup_chunk(record, validate_crc=True):
-                    self._take(inner)
-            case Metadata() if record.name == SESSION_METADATA:
-                self._describe(record.metadata[DESCRIPTION_FIELD])
-            case Channel():
-                self._contents.channels[record.id] = record
-            case Message():
-                self._store(record)
+    def _take(self, found: SegmentScan) -> bool:
+        """What was found right in a file, and whether that is all of it. Raises Damage, OSError.
 
-    def _store(self, record: Message) -> None:
-        channel = self._contents.channels[record.channel_id]
-        if channel.topic == SESSION_TOPIC:
-            self._describe(record.data.decode())
-            return
-        if not channel.topic.startswith(_RAW_TOPICS) or not record.data:
-            return
-        epoch = int(channel.metadata[EPOCH_KEY])
-        kept = self._contents.stored.setdefault(channel.topic, {})
-        kept.setdefault((epoch, record.sequence), _Stored(record.log_time, epoch, record.sequence, record.data))
-
-    def _describe(self, text: str) -> None:
-        """The first description stands: all files of a session carry the same."""
+        The first description stands: all files of a session carry the same.
+        """
         if self._contents.description is None:
-            try:
-                self._contents.description = SessionDescription.model_validate(json.loads(text))
-            except ValidationError as error:
-                raise ValueError("the session description is not one") from error
+            self._contents.description = found.description
+        with found.path.open("rb") as file:
+            for span in found.chunks:
+                for message in read_messages(file, span):
+                    self._store(message)
+        return found.whole
+
+    def _store(self, message: RawMessage) -> None:
+        topic, epoch, _ = message.channel
+        if topic.startswith(_RAW_TOPICS) and message.data:
+            kept = self._contents.stored.setdefault(topic, {})
+            stored = _Stored(message.log_time, epoch, message.sequence, message.data)
+            kept.setdefault((epoch, message.sequence), stored)
