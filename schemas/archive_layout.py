@@ -71,7 +71,7 @@ class SegmentName(NamedTuple):
 
     @property
     def file_name(self) -> str:
-        """`raw.mcap`, `raw_001.mcap`, `derived-0.1.0.mcap`, ... with `.part` while open."""
+        """`raw.mcap`, `raw_001.mcap`, `derived-0.1.0+1f2e3d4c.mcap`, ... with `.part` while open."""
         stem = "raw" if self.version is None else f"derived-{self.version}"
         suffix = f"_{self.number:03d}" if self.number else ""
         return f"{stem}{suffix}.mcap{PART_SUFFIX if self.part else ''}"

@@ -1,7 +1,6 @@
 """The archive as a process: one per data folder, waiting for the router when it is not there yet."""
 
 import logging
-from importlib.metadata import version
 
 from services.archive.lock import DataFolderLock, DataFolderUnusable
 from services.archive.service import Archive
@@ -10,6 +9,7 @@ from services.bus.connection import Bus
 from services.bus.lifetime import stop_event
 from services.bus.logs import event, set_up_logging
 from services.bus.settings import BusSettings
+from services.flow.software import VERSION
 
 
 def run() -> int:
@@ -23,7 +23,7 @@ def run() -> int:
             if bus is None:
                 return 0
             with bus:
-                return Archive(bus, settings.data_dir, version("ambula"), stop).run()
+                return Archive(bus, settings.data_dir, VERSION, stop).run()
     except DataFolderUnusable as error:
         logging.getLogger("archive").error(event("not_started", reason=error))
         return 1

@@ -1,7 +1,6 @@
 """The ambula command."""
 
 import inspect
-from importlib.metadata import version
 from pathlib import Path
 from typing import Annotated
 
@@ -66,7 +65,9 @@ Rhythm = Annotated[
 
 def _version(wanted: bool) -> None:
     if wanted:
-        out.print(f"ambula {version('ambula')}")
+        from services.flow.software import SOFTWARE
+
+        out.print(SOFTWARE)
         raise typer.Exit
 
 

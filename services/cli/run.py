@@ -1,7 +1,6 @@
 """`ambula run`: a recording through the nodes in a plain loop, into files."""
 
 import json
-from importlib.metadata import version
 from pathlib import Path
 from typing import Any
 
@@ -19,6 +18,7 @@ from services.cli.interrupt import on_interrupt
 from services.cli.rhythms import FILE_NAME
 from services.flow.chain import Chain
 from services.flow.message import Message
+from services.flow.software import SOFTWARE
 from services.ingest.choices import AS_THE_SOURCE_SAYS, Choices
 from services.ingest.driver import LiveSource
 from services.ingest.source import Source, iter_messages, open_chosen
@@ -91,7 +91,7 @@ def _header(source: Source, chain: Chain) -> dict[str, Any]:
     for host in chain.hosts:
         rejections += host.node.rejections()
     return {
-        "software": f"ambula {version('ambula')}",
+        "software": SOFTWARE,
         "session": description.session,
         "title": description.title,
         "estimator": description.estimator,

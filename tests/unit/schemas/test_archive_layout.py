@@ -21,6 +21,7 @@ def test_file_names_and_back(version, number, part):
         (SegmentName("raw", None, 0, False), "raw.mcap"),
         (SegmentName("raw", None, 12, True), "raw_012.mcap.part"),
         (SegmentName("derived", "0.1.0", 1, False), "derived-0.1.0_001.mcap"),
+        (SegmentName("derived", "0.1.0+1f2e3d4c", 2, True), "derived-0.1.0+1f2e3d4c_002.mcap.part"),
     ],
 )
 def test_file_names_as_people_see_them(name, text):
