@@ -18,12 +18,15 @@ from services.gateway.live.hub import LiveHub
 from services.gateway.live.routes import router as live_routes
 from services.gateway.patients.routes import router as patients
 from services.gateway.problems import ProblemOut
+from services.gateway.progress.routes import router as progress
 from services.gateway.recordings.routes import router as recordings
 from services.gateway.security import BodyLimit, HostNames, SecurityHeaders
 from services.gateway.sessions.keeper import SessionKeeper
 from services.gateway.sessions.routes import router as sessions
 from services.gateway.settings import GatewaySettings
 from services.gateway.sources.routes import router as sources
+from services.gateway.treatments.routes import router as treatments
+from services.gateway.visits.routes import router as visits
 
 DESCRIPTION = "Patients, sessions, metrics and recordings of one Ambula site. Research software, not a medical device."
 
@@ -51,7 +54,7 @@ def create_app(settings: GatewaySettings, live: LiveHub, control: Control) -> Fa
     )
     app.state.gateway = Gateway(settings, live.parameters, database, keeper, live, control)
     problems.install(app)
-    for router in (patients, sessions, recordings, sources, health, live_routes):
+    for router in (patients, visits, progress, treatments, sessions, recordings, sources, health, live_routes):
         app.include_router(router)
     pages.install(app, settings.pages_dir)
     app.add_middleware(BodyLimit, most_bytes=live.parameters.most_body_bytes)

@@ -1,15 +1,13 @@
 """What the sessions of a patient have learned of the walk, handed on to the next one."""
 
-from datetime import UTC, datetime, timedelta
+from datetime import UTC, datetime
 
 from sqlalchemy import ColumnElement, select
 from sqlalchemy.orm import Session
 
 from schemas.rhythm import KnownRhythm, LearnedRhythm, RhythmKind
 from services.gateway.tables import RhythmRow, SessionRow
-
-SAME_VISIT = timedelta(hours=12)
-"""Sessions that began less than this before are trials of the same visit."""
+from services.progress.visits import SAME_VISIT
 
 
 def record_rhythm(database: Session, session: str, rhythm: LearnedRhythm) -> bool:

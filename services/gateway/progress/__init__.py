@@ -1,0 +1,1 @@
+"""Baseline and progress of a patient."""

@@ -1,0 +1,1 @@
+"""What was done for a patient, as marks beside the progress."""

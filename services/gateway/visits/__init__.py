@@ -1,0 +1,1 @@
+"""What a patient did at each coming."""

@@ -1,0 +1,1 @@
+"""Did this patient really change: visits, baseline, thresholds and verdicts."""

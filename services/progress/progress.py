@@ -1,0 +1,159 @@
+"""All that is said of a patient's progress, from visits and baseline."""
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+
+from schemas.conditions import SpeedInstruction
+from schemas.population import Population
+from schemas.vocabulary import Side, Task
+from services.progress.baseline import Baseline, TestBaseline
+from services.progress.likeness import differences, unsaid
+from services.progress.measures import is_followed, measure_of, place
+from services.progress.points import Point, point
+from services.progress.recovery import OTHER_MOTIONS, JointRecovery, joint_recovery
+from services.progress.rules import Rule, RuleCode, rule
+from services.progress.series import Frame, Series, series
+from services.progress.visits import Trial, Visit, numbers_of_sessions
+
+Test = tuple[Task, SpeedInstruction | None]
+
+
+@dataclass(frozen=True, slots=True)
+class Progress:
+    """Series by measure, and joints, of every test that was done."""
+
+    series: list[Series]
+    joints: list[JointRecovery]
+
+
+@dataclass(frozen=True, slots=True)
+class ReferenceUse:
+    """A reference set as far as like with like goes."""
+
+    version: str
+    measures: frozenset[str]
+    """Measures that it tells anything of."""
+
+
+@dataclass(frozen=True, slots=True)
+class Person:
+    """What verdicts have to know of the patient and the site now."""
+
+    population: Population | None
+    paretic_side: Side | None
+    references: Mapping[str, ReferenceUse]
+    """Reference sets that are loaded, by name."""
+
+
+def progress(visits: Sequence[Visit], baseline: Baseline | None, person: Person, task: Task | None = None) -> Progress:
+    """Everything, or that of one task."""
+    found = [test for test in _tests(visits) if task is None or test[0] is task]
+    told = [_of_test(test, visits, baseline, person) for test in found]
+    return Progress([each for one, _ in told for each in one], [each for _, joints in told for each in joints])
+
+
+def _tests(visits: Sequence[Visit]) -> list[Test]:
+    done = (
+        (trial.task, trial.conditions.speed_instruction)
+        for visit in visits
+        for trial in visit.trials
+        if trial.metrics is not None
+    )
+    return list(dict.fromkeys(done))
+
+
+def _of_test(
+    test: Test, visits: Sequence[Visit], baseline: Baseline | None, person: Person
+) -> tuple[list[Series], list[JointRecovery]]:
+    trials = _trials(test, visits)
+    base = None if baseline is None else baseline.test(*test)
+    first = None if base is None else next((t for _, t in trials if t.session == base.sessions[0]), None)
+    frame = _frame(test, visits, baseline, base if first else None, person)
+    found = [
+        series(frame, measure_of(name), side, unit, _points(trials, name, side, first))
+        for name, side, unit in _measures(trials)
+    ]
+    return found, _joints(trials, first, frame, found, person)
+
+
+def _trials(test: Test, visits: Sequence[Visit]) -> list[tuple[Visit, Trial]]:
+    task, instruction = test
+    return [
+        (visit, trial)
+        for visit in visits
+        for trial in visit.of(task)
+        if trial.metrics is not None and trial.conditions.speed_instruction is instruction
+    ]
+
+
+def _measures(trials: Sequence[tuple[Visit, Trial]]) -> list[tuple[str, str | None, str]]:
+    """Name, side and unit of every measure that any of the trials has, in the order of an answer."""
+    found = dict.fromkeys(
+        (metric.name, metric.side, metric.unit)
+        for _, trial in trials
+        if trial.metrics is not None
+        for metric in trial.metrics.metrics
+        if is_followed(metric.name)
+    )
+    return sorted(found, key=lambda each: place(each[0]))
+
+
+def _points(trials: Sequence[tuple[Visit, Trial]], name: str, side: str | None, baseline: Trial | None) -> list[Point]:
+    told = ((visit, trial, trial.metric(name, side)) for visit, trial in trials)
+    return [
+        point(visit, trial, measure_of(name), metric, baseline) for visit, trial, metric in told if metric is not None
+    ]
+
+
+def _frame(
+    test: Test, visits: Sequence[Visit], baseline: Baseline | None, base: TestBaseline | None, person: Person
+) -> Frame:
+    task, instruction = test
+    if baseline is None or base is None:
+        return Frame(task, instruction, (), 0, None, (), None, (), {})
+    start = numbers_of_sessions(visits)[base.sessions[0]]
+    population, outdated = baseline.population, _outdated(baseline, person)
+    blocked = _blocked(baseline, person)
+    return Frame(task, instruction, base.sessions, start, base.speed, base.thresholds, population, blocked, outdated)
+
+
+def _blocked(baseline: Baseline, person: Person) -> list[Rule]:
+    """Why thresholds may not be used at all (rule 6.3.3)."""
+    if baseline.population is None:
+        return [rule(RuleCode.POPULATION_UNSAID)]
+    if person.population is not baseline.population:
+        return [rule(RuleCode.POPULATION_CHANGED, person.population, baseline.population)]
+    return []
+
+
+def _outdated(baseline: Baseline, person: Person) -> dict[str, Rule]:
+    """Measures whose reference set has another version than at the baseline (rule 6.3.6)."""
+    outdated: dict[str, Rule] = {}
+    for name, then in baseline.references.items():
+        now = person.references.get(name)
+        if now is not None and now.version != then:
+            changed = rule(RuleCode.REFERENCE_CHANGED, name, now.version, then)
+            outdated |= dict.fromkeys(now.measures, changed)
+    return outdated
+
+
+def _joints(
+    trials: Sequence[tuple[Visit, Trial]], first: Trial | None, frame: Frame, found: Sequence[Series], person: Person
+) -> list[JointRecovery]:
+    if first is None:
+        return []
+    alike: dict[int, tuple[Visit, list[Trial]]] = {}
+    for visit, trial in trials:
+        if visit.number >= frame.start and not unsaid(trial) and not differences(trial, first, "rad"):
+            alike.setdefault(visit.number, (visit, []))[1].append(trial)
+    names = dict.fromkeys(
+        side.joint for _, each in alike.values() for trial in each if trial.metrics for side in trial.metrics.sides
+    )
+    speed = next((each for each in found if each.measure == "walking_speed"), None)
+    others = [each for each in found if each.measure in OTHER_MOTIONS and _counts(each.side, person.paretic_side)]
+    told = [joint_recovery(joint, list(alike.values()), speed, others) for joint in names]
+    return [each for each in told if each is not None]
+
+
+def _counts(side: str | None, paretic: Side | None) -> bool:
+    return side is None or paretic is None or side == paretic
