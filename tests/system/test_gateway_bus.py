@@ -152,7 +152,7 @@ def test_orders_reach_the_ingest_and_refusals_come_back(settings, closing, tmp_p
         control.stop("b")
     assert control.mark("a", 3.0, 12.5) == (9.5, 12.5)
     start, mark = dict(orders)["start"], dict(orders)["mark"]
-    chosen = dict.fromkeys(("estimator", "walk_path", "known_rhythms", "task", "walkway_m"))
+    chosen = dict.fromkeys(("estimator", "walk_path", "known_rhythms", "task", "walkway_m", "conditions"))
     assert start == {"session": "a", "source": "synthetic:walk", "speed": 1.0} | chosen
     assert mark == {"session": "a", "last_s": 3.0, "at_s": 12.5}
 
