@@ -20,6 +20,7 @@ from services.gateway.patients.routes import router as patients
 from services.gateway.problems import ProblemOut
 from services.gateway.progress.routes import router as progress
 from services.gateway.recordings.routes import router as recordings
+from services.gateway.references.routes import router as references
 from services.gateway.security import BodyLimit, HostNames, SecurityHeaders
 from services.gateway.sessions.keeper import SessionKeeper
 from services.gateway.sessions.routes import router as sessions
@@ -29,6 +30,19 @@ from services.gateway.treatments.routes import router as treatments
 from services.gateway.visits.routes import router as visits
 
 DESCRIPTION = "Patients, sessions, metrics and recordings of one Ambula site. Research software, not a medical device."
+
+ROUTERS = (
+    patients,
+    visits,
+    progress,
+    treatments,
+    references,
+    sessions,
+    recordings,
+    sources,
+    health,
+    live_routes,
+)
 
 
 def create_app(settings: GatewaySettings, live: LiveHub, control: Control) -> FastAPI:
@@ -54,7 +68,18 @@ def create_app(settings: GatewaySettings, live: LiveHub, control: Control) -> Fa
     )
     app.state.gateway = Gateway(settings, live.parameters, database, keeper, live, control)
     problems.install(app)
-    for router in (patients, visits, progress, treatments, sessions, recordings, sources, health, live_routes):
+    for router in (
+        patients,
+        visits,
+        progress,
+        treatments,
+        references,
+        sessions,
+        recordings,
+        sources,
+        health,
+        live_routes,
+    ):
         app.include_router(router)
     pages.install(app, settings.pages_dir)
     app.add_middleware(BodyLimit, most_bytes=live.parameters.most_body_bytes)

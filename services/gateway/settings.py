@@ -24,6 +24,9 @@ class GatewaySettings(BaseSettings):
     )
     database: str = Field(default="", description="SQLAlchemy URL; empty for a SQLite file in the data folder")
     data_dir: Path = Field(default=Path("data"), description="the folder with the archive's recordings")
+    references: str = Field(
+        default="", description="folders of the clinic's own reference sets, as a path list; the shipped ones come last"
+    )
     pages_dir: Path = Field(default=DIST, description="the folder with the built pages")
 
     @property

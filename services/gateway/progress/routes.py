@@ -13,6 +13,7 @@ from services.gateway.patients.records import get_patient
 from services.gateway.problems import Problem, documented
 from services.gateway.progress import records, shapes
 from services.gateway.progress.models import BaselineIn, BaselineOut, ProgressOut
+from services.gateway.references.shelf import reference_uses
 from services.gateway.tables import BaselineRow, PatientRow
 from services.gateway.visits.records import sessions_of, visits_of
 from services.progress.baseline import Baseline
@@ -92,11 +93,6 @@ def _person(patient: PatientRow, uses: dict[str, ReferenceUse]) -> Person:
     population = None if patient.population is None else Population(patient.population)
     side = None if patient.paretic_side is None else Side(patient.paretic_side)
     return Person(population, side, uses)
-
-
-def reference_uses(gateway: Gateway) -> dict[str, ReferenceUse]:  # noqa: ARG001
-    """Reference sets of this site, as far as like with like goes."""
-    return {}
 
 
 def _versions(uses: dict[str, ReferenceUse]) -> dict[str, str]:

@@ -1,16 +1,16 @@
 """Sessions in the database."""
 
 import secrets
-from datetime import UTC, datetime, timedelta
-from typing import Any
+from dataclasses import dataclass
+from datetime import UTC, date, datetime, time, timedelta
 
-from sqlalchemy import Select, func, select
+from sqlalchemy import ColumnElement, func, select
 from sqlalchemy.orm import Session
 
 from schemas.kinematics import Calibration
 from schemas.metrics import SessionMetrics
 from schemas.session import SessionDescription
-from schemas.vocabulary import ESTIMATORS
+from schemas.vocabulary import ESTIMATORS, Task
 from services.gateway.problems import not_found
 from services.gateway.sessions.models import SessionIn, SessionState
 from services.gateway.tables import CalibrationRow, MetricsRow, SessionRow
@@ -124,18 +124,37 @@ def get_session(database: Session, session: str) -> SessionRow:
     return row
 
 
-def list_sessions(
-    database: Session, state: SessionState | None, patient: str | None, offset: int, limit: int
-) -> tuple[int, list[SessionRow]]:
+@dataclass(frozen=True, slots=True)
+class Wanted:
+    """Which sessions are listed; null: any. Days are UTC, both included."""
+
+    state: SessionState | None = None
+    patient: str | None = None
+    task: Task | None = None
+    from_day: date | None = None
+    to_day: date | None = None
+
+    def conditions(self) -> list[ColumnElement[bool]]:
+        """For a query."""
+        equal = ((SessionRow.state, self.state), (SessionRow.patient_code, self.patient), (SessionRow.task, self.task))
+        wanted = [column == value for column, value in equal if value is not None]
+        if self.from_day is not None:
+            wanted.append(SessionRow.created >= _midnight(self.from_day))
+        if self.to_day is not None and self.to_day < date.max:
+            wanted.append(SessionRow.created < _midnight(self.to_day + timedelta(days=1)))
+        return wanted
+
+
+def list_sessions(database: Session, wanted: Wanted, offset: int, limit: int) -> tuple[int, list[SessionRow]]:
     """Number of all sessions that match, and some of them, newest first."""
-
-    def matching(query: Select[Any]) -> Select[Any]:
-        query = query if state is None else query.where(SessionRow.state == state)
-        return query if patient is None else query.where(SessionRow.patient_code == patient)
-
-    total = database.scalar(matching(select(func.count()).select_from(SessionRow))) or 0
-    order = matching(select(SessionRow)).order_by(SessionRow.created.desc(), SessionRow.id)
+    conditions = wanted.conditions()
+    total = database.scalar(select(func.count()).select_from(SessionRow).where(*conditions)) or 0
+    order = select(SessionRow).where(*conditions).order_by(SessionRow.created.desc(), SessionRow.id)
     return total, list(database.scalars(order.offset(offset).limit(limit)))
+
+
+def _midnight(day: date) -> datetime:
+    return datetime.combine(day, time.min, UTC)
 
 
 def open_sessions(database: Session) -> list[str]:

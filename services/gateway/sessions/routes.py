@@ -1,7 +1,7 @@
 """REST of sessions."""
 
 import logging
-from datetime import UTC, datetime
+from datetime import UTC, date, datetime
 from http import HTTPStatus
 from typing import Annotated
 
@@ -9,6 +9,7 @@ from fastapi import APIRouter, Query
 
 from schemas.metrics import SessionMetrics
 from schemas.session import SessionDescription
+from schemas.vocabulary import Task
 from services.gateway.context import Context, Gateway, Limit, Offset, SessionId
 from services.gateway.control import ControlRefused, ControlUnavailable, StartRequest
 from services.gateway.patients.records import get_patient, with_known_side
@@ -33,6 +34,7 @@ log = logging.getLogger(__name__)
 router = APIRouter(prefix="/v1/sessions", tags=["sessions"])
 
 START_SERVICES = "Start the services with `ambula up`; the System page (GET /v1/health) shows which are missing."
+DAY = "2026-11-22"
 CHOOSE_SOURCE = "Choose a source from GET /v1/sources."
 
 
@@ -65,12 +67,16 @@ def list_sessions(
     gateway: Context,
     state: Annotated[SessionState | None, Query(description="only sessions in this state")] = None,
     patient: Annotated[str | None, Query(description="only sessions of this patient code", max_length=16)] = None,
+    task: Annotated[Task | None, Query(description="only sessions with this task")] = None,
+    from_day: Annotated[date | None, Query(alias="from", description="UTC day of the earliest", examples=[DAY])] = None,
+    to_day: Annotated[date | None, Query(alias="to", description="UTC day of the latest", examples=[DAY])] = None,
     offset: Offset = 0,
     limit: Limit = 50,
 ) -> SessionPage:
     """List the sessions, newest first."""
+    wanted = records.Wanted(state, patient, task, from_day, to_day)
     with gateway.database.transaction() as database:
-        total, rows = records.list_sessions(database, state, patient, offset, limit)
+        total, rows = records.list_sessions(database, wanted, offset, limit)
         return SessionPage(total=total, items=[shapes.session_out(row) for row in rows])
 
 

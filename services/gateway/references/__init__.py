@@ -1,0 +1,1 @@
+"""Reference sets that this site has."""
