@@ -15,7 +15,7 @@ PALETTE = DIST.parents[1] / "web" / "src" / "palette.js"
 
 
 @pytest.mark.skipif(shutil.which("node") is None, reason="node is not installed")
-@pytest.mark.parametrize("name", ["page", "whole_body", "walking_tests"])
+@pytest.mark.parametrize("name", ["page", "whole_body", "walking_tests", "progress"])
 def test_page_modules(name):
     done = subprocess.run(
         ["node", "--test", str(HERE / f"{name}.test.mjs")], capture_output=True, text=True, timeout=120, check=False

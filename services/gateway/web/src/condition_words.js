@@ -44,7 +44,11 @@ export function conditionWords(conditions) {
     ORTHOSES[orthosis],
     FOOTWEAR[footwear],
     physical_assistance ? "with physical assistance" : null,
-    speed_instruction ? `pace: ${PACES[speed_instruction].toLowerCase()}` : null,
+    speed_instruction ? `Pace: ${PACES[speed_instruction].toLowerCase()}` : null,
     start ? `start: ${STARTS[start].toLowerCase()}` : null,
-  ].filter(Boolean);
+  ]
+    .filter(Boolean)
+    .map((words, place) => (place === 0 ? capital(words) : words.toLowerCase()));
 }
+
+const capital = (words) => words.charAt(0).toUpperCase() + words.slice(1);

@@ -60,3 +60,8 @@ function set(node, attributes) {
     else if (value !== false && value !== null && value !== undefined) node.setAttribute(name, String(value));
   }
 }
+
+/** A part of a page under its heading. */
+export function panel(title, ...children) {
+  return el("section", { class: "panel", "aria-label": title }, el("h2", {}, title), ...children);
+}

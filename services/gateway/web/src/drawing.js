@@ -32,6 +32,10 @@ export function ticksOf(low, high, count) {
   return Array.from({ length: Math.floor(high / step + 1e-9) - first + 1 }, (_, i) => (first + i) * step);
 }
 
+/** Decimals that tell round values apart. */
+export const digitsOf = ([first, second]) =>
+  second === undefined ? 0 : Math.max(0, -Math.floor(Math.log10(second - first) + 1e-9));
+
 export function text(x, y, words, attributes = {}) {
   const node = svg("text", { x, y, "font-size": 12, fill: SOFT_INK, ...attributes });
   node.append(words);
@@ -54,7 +58,7 @@ export function leftAxis(values, place, { left, right, title, middle }) {
   return [
     ...values.flatMap((value) => [
       svg("line", { x1: left, x2: right, y1: place(value), y2: place(value), stroke: GRID }),
-      text(left - 7, place(value) + 4, number(value, 0), { "text-anchor": "end" }),
+      text(left - 7, place(value) + 4, number(value, digitsOf(values)), { "text-anchor": "end" }),
     ]),
     text(0, 0, title, { "text-anchor": "middle", transform: `translate(11 ${middle}) rotate(-90)` }),
   ];

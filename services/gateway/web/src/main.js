@@ -2,6 +2,7 @@
 import { el, fill, say } from "./dom.js";
 import { FloorView } from "./floor_view.js";
 import { LiveSocket } from "./live_socket.js";
+import { PatientView } from "./patient_view.js";
 import { PatientsView } from "./patients_view.js";
 import { SessionView } from "./session_view.js";
 import { StartDialog } from "./start_dialog.js";
@@ -31,6 +32,8 @@ function route() {
   const host = el("div", { class: `page ${page || "floor"}` });
   fill(content, host);
   if (page === "sessions" && /^[A-Za-z0-9_-]+$/.test(id)) view = new SessionView(host, id);
+  else if (page === "patients" && /^[A-Z0-9]+$/.test(id))
+    view = new PatientView(host, id, { startSession: (code) => dialog.open(code) });
   else if (page === "patients") view = new PatientsView(host);
   else if (page === "system") view = new SystemView(host);
   else {

@@ -22,6 +22,9 @@ export const PHASE_COLOURS = {
   timed_zone: "#DDEEDF",
   run_out: "#E6EBED",
 };
+/** Baseline and its MDC, under marks. */
+export const CHANGE_BAND = "#E9EDF0";
+export const PANEL = "#FFFFFF";
 export const GHOST = "#DDE4E7";
 
 /** `#rrggbb` with an alpha for bands. */

@@ -1,5 +1,6 @@
 // Patients as codes. Who is behind a code is known outside of Ambula.
-import { get, patch, post } from "./api.js";
+import { get, post } from "./api.js";
+import { GROUPS, PARETIC } from "./condition_words.js";
 import { el, fill, say, table } from "./dom.js";
 import { when } from "./units.js";
 
@@ -32,7 +33,7 @@ export class PatientsView {
           "A patient is a random code here. Write it on the chart; names do not belong into this software.",
         ),
         this.problem,
-        table(["Code", "Year of birth", "Sessions", "Registered"], this.rows),
+        table(["Code", "Year of birth", "Group", "Paretic side", "Sessions#", "Registered"], this.rows),
       ),
     );
     this.load();
@@ -51,39 +52,25 @@ export class PatientsView {
         this.rows,
         page.items.length > 0
           ? page.items.map((patient) => this.row(patient))
-          : el("tr", {}, el("td", { colspan: 4, class: "quiet" }, "No patients yet.")),
+          : el("tr", {}, el("td", { colspan: 6, class: "quiet" }, "No patients yet.")),
       );
     });
   }
 
-  row(patient) {
-    const year = el("input", {
-      type: "number",
-      min: 1900,
-      max: 2100,
-      value: patient.year_of_birth,
-      placeholder: "not given",
-      "aria-label": `Year of birth of ${patient.code}`,
-    });
-    year.addEventListener("change", () =>
-      this.attempt(() =>
-        patch(`/patients/${patient.code}`, { year_of_birth: year.value === "" ? null : Number(year.value) }),
-      ),
-    );
+  row({ code, year_of_birth, population, paretic_side, sessions, created }) {
+    const known = [year_of_birth, GROUPS[population], PARETIC[paretic_side]];
     return el(
       "tr",
       {},
-      el("td", {}, el("span", { class: "code" }, patient.code)),
-      el("td", {}, year),
-      el("td", {}, String(patient.sessions)),
-      el("td", {}, when(patient.created)),
+      el("th", { scope: "row" }, el("a", { class: "code", href: `#/patients/${code}` }, code)),
+      ...known.map((value) => (value ? el("td", {}, String(value)) : el("td", { class: "quiet" }, "not said"))),
+      el("td", { class: "number" }, String(sessions)),
+      el("td", {}, when(created)),
     );
   }
 
   async add() {
-    await this.attempt(() => post("/patients", {}));
-    this.offset = 0;
-    await this.load();
+    await this.attempt(async () => (location.hash = `#/patients/${(await post("/patients", {})).code}`));
   }
 
   async attempt(action) {

@@ -73,12 +73,13 @@ export class StartDialog {
     document.body.append(this.node);
   }
 
-  async open() {
+  /** @param {string} [patient] code that is chosen beforehand */
+  async open(patient) {
     this.complain("");
     this.node.showModal();
     try {
       const [offer, patients] = await Promise.all([get("/sources"), get("/patients?limit=100")]);
-      this.offer(offer, patients.items);
+      this.offer(offer, patients.items, patient);
       if (!offer.ready)
         this.complain("No ingest service answers just now. Start the services with “ambula up”, then try again.");
     } catch (problem) {
@@ -86,7 +87,7 @@ export class StartDialog {
     }
   }
 
-  offer({ sources, estimators }, patients) {
+  offer({ sources, estimators }, listed, chosen) {
     const groups = Object.entries(KINDS).map(([kind, label]) => [
       label,
       sources.filter((source) => source.kind === kind),
@@ -101,12 +102,15 @@ export class StartDialog {
     );
     this.sources = new Map(sources.map((source) => [source.id, source]));
     this.estimators = estimators;
+    const patients =
+      chosen && !listed.some(({ code }) => code === chosen) ? [{ code: chosen, paretic_side: null }, ...listed] : listed;
     this.paretic = new Map(patients.map((patient) => [patient.code, patient.paretic_side]));
     fill(
       this.patient,
       el("option", { value: "" }, "assign later"),
       ...patients.map((patient) => el("option", { value: patient.code }, patient.code)),
     );
+    this.patient.value = chosen ?? "";
     this.fit();
     this.tellSide();
   }
@@ -114,7 +118,7 @@ export class StartDialog {
   /** The more affected side is the patient's, not the test's. */
   tellSide() {
     const side = this.paretic.get(this.patient.value);
-    this.side.textContent = side ? `More affected side, from the patient's record: ${side}.` : "";
+    this.side.textContent = side ? `Paretic side, from the patient's record: ${side}.` : "";
     this.side.hidden = !side;
   }
 
