@@ -68,18 +68,7 @@ def create_app(settings: GatewaySettings, live: LiveHub, control: Control) -> Fa
     )
     app.state.gateway = Gateway(settings, live.parameters, database, keeper, live, control)
     problems.install(app)
-    for router in (
-        patients,
-        visits,
-        progress,
-        treatments,
-        references,
-        sessions,
-        recordings,
-        sources,
-        health,
-        live_routes,
-    ):
+    for router in ROUTERS:
         app.include_router(router)
     pages.install(app, settings.pages_dir)
     app.add_middleware(BodyLimit, most_bytes=live.parameters.most_body_bytes)
