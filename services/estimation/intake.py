@@ -99,7 +99,7 @@ class Intake:
         ):
             values = (*rate, *force)
             if captured_ns <= passed_ns and self._is_new(place, captured_ns):
-                self.checks.refuse(self.sensors[place].name, Reason.LATE)
+                self.checks.refuse_sample(place, captured_ns, Reason.LATE)
             elif accept(place, captured_ns, values, message_ns):
                 self._samples.append(Sample(captured_ns, place, values))
                 if captured_ns > until_ns:

@@ -24,6 +24,17 @@ class CheckParameters:
 
 
 @dataclass(frozen=True)
+class QualityParameters:
+    """When and of what the quality of the data is told."""
+
+    period_s: float = 5.0  # s of session time between two messages
+    pace_s: float = 1.0  # s over which the mean rate of the flexions is smoothed: joints stop for a moment in a stride
+    moving_pace: float = 0.15  # rad/s of it; standing stays below 0.03, walking 0.3 m/s has 0.3
+    moving_pace_camera: float = 0.5  # the same of a camera, whose noise makes 0.38 of a standing person
+    longest_row_s: float = 0.25  # s between two rows; what is longer was seen by nobody, as a silent sensor
+
+
+@dataclass(frozen=True)
 class StandingParameters:
     """What counts as quiet standing."""
 
@@ -240,6 +251,7 @@ class EstimationParameters:
     segment_motion: SegmentMotionParameters = field(default_factory=SegmentMotionParameters)
     knee: KneeParameters = field(default_factory=KneeParameters)
     body: BodyParameters = field(default_factory=BodyParameters)
+    quality: QualityParameters = field(default_factory=QualityParameters)
     lateness_s: float = 0.04  # s of captured time that one hub may lag behind another before it is not waited for
     same_tick_s: float = 0.0005  # s, samples closer than this are fused at the time of the earliest
     before_walking_s: float = (

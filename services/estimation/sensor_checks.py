@@ -44,6 +44,8 @@ class SensorChecks:
     parameters: CheckParameters = field(default_factory=CheckParameters)
     records: list[SensorRecord] = field(default_factory=list)
     refused: Counter[tuple[str, Reason]] = field(default_factory=Counter)
+    dated: list[tuple[int, int, str]] = field(default_factory=list)
+    """Refused samples that nobody has counted by time yet: ns, sensor, reason."""
 
     def __post_init__(self) -> None:
         self.records = [SensorRecord() for _ in self.names]
@@ -52,12 +54,27 @@ class SensorChecks:
         """Count something that was not used."""
         self.refused[subject, reason] += count
 
+    def refuse_sample(self, sensor: int, captured_ns: int, reason: Reason) -> None:
+        """Count a sample that was not used. A broken clock's is dated with the last one that was right."""
+        self.refuse(self.names[sensor], reason)
+        newest_ns = self.records[sensor].newest_ns or 0
+        is_plausible = captured_ns - newest_ns <= self.parameters.farthest_from_message_s * 1e9
+        self.dated.append((max(newest_ns, captured_ns) if is_plausible else newest_ns, sensor, reason.value))
+
+    def refused_before(self, until_ns: int | None) -> list[tuple[int, int, str]]:
+        """Refused samples dated before a time, or all: handed out once."""
+        if not self.dated:
+            return []
+        taken = [each for each in self.dated if until_ns is None or each[0] < until_ns]
+        self.dated = [each for each in self.dated if until_ns is not None and each[0] >= until_ns]
+        return taken
+
     def accept(self, sensor: int, captured_ns: int, values: Values, message_ns: int) -> bool:
         """Whether a sample (6,) may be used."""
         record = self.records[sensor]
         reason = self._reason(record, captured_ns, values, message_ns)
         if reason is not None:
-            self.refuse(self.names[sensor], reason)
+            self.refuse_sample(sensor, captured_ns, reason)
             return False
         record.usable_ns = captured_ns
         return True
@@ -111,6 +128,7 @@ class SensorChecks:
             "values": pack_array(np.array([record.values for record in self.records]).reshape(-1, 6)),
             "records": [[r.newest_ns, r.usable_ns, r.repeats, r.jumped] for r in self.records],
             "refused": [[subject, str(reason), count] for (subject, reason), count in sorted(self.refused.items())],
+            "dated": [list(each) for each in self.dated],
         }
 
     def restore(self, state: State) -> None:
@@ -122,3 +140,4 @@ class SensorChecks:
             )
         ]
         self.refused = Counter({(subject, Reason(reason)): count for subject, reason, count in state["refused"]})
+        self.dated = [(captured_ns, sensor, reason) for captured_ns, sensor, reason in state["dated"]]

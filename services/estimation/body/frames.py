@@ -54,6 +54,7 @@ class FrameIntake:
         self._last: list[list[float] | None] = []
         self._repeats = 0
         self._refused: Counter[Reason] = Counter()
+        self._dated: list[tuple[int, int, str]] = []
 
     def accept(self, batch: SkeletonBatch, message_ns: int) -> Iterator[Frame]:
         """The usable frames of a message, in order of capture."""
@@ -63,6 +64,7 @@ class FrameIntake:
             reason = self._reason(captured_ns, body, position, state, message_ns)
             if reason is not None:
                 self._refused[reason] += 1
+                self._dated.append((self._newest_ns or 0, 0, reason.value))
                 continue
             self._usable_ns = captured_ns
             yield self._frame(captured_ns, body, people, position, state)
@@ -108,6 +110,12 @@ class FrameIntake:
             return SensorState.OK, since_ns
         return (SensorState.STUCK if self._repeats >= self._parameters.stuck_after else SensorState.REJECTED), since_ns
 
+    def refused_before(self, until_ns: int | None) -> list[tuple[int, int, str]]:
+        """Refused frames dated before a time, or all: handed out once."""
+        taken = [each for each in self._dated if until_ns is None or each[0] < until_ns]
+        self._dated = [each for each in self._dated if until_ns is not None and each[0] >= until_ns]
+        return taken
+
     def rejections(self) -> list[Rejection]:
         """Counts by reason: of frames, and of single centres that are not finite or out of range."""
         name = self.camera.name
@@ -119,6 +127,7 @@ class FrameIntake:
             "times_ns": [self._newest_ns, self._usable_ns],
             "last": self._last if _is_finite(self._last) else [],
             "repeats": self._repeats,
+            "dated": [list(each) for each in self._dated],
             "refused": {why.value: n for why, n in sorted(self._refused.items())},
         }
 
@@ -126,6 +135,7 @@ class FrameIntake:
         """Inverse of `snapshot`."""
         self._newest_ns, self._usable_ns = state["times_ns"]
         self._last, self._repeats = state["last"], state["repeats"]
+        self._dated = [(captured_ns, place, reason) for captured_ns, place, reason in state["dated"]]
         self._refused = Counter({Reason(why): n for why, n in state["refused"].items()})
 
 

@@ -24,6 +24,7 @@ class Run:
         self.posture: Posture | None = None
         self._rows: list[Row] = []
         self._postures: list[Posture] = []
+        self._heard = 0
 
     def add(self, row: Row, valid: list[bool], posture: Posture) -> None:
         """Take the next row."""
@@ -48,6 +49,11 @@ class Run:
         )
         self.outputs.append(Output(JOINT_CENTRES, self._rows[-1].captured_ns, centres))
         self._rows, self._postures = [], []
+
+    def unheard(self) -> list[Output]:
+        """The messages since this was asked last."""
+        heard, self._heard = self._heard, len(self.outputs)
+        return self.outputs[heard:]
 
     def finish(self) -> list[Output]:
         """All messages, and what was learned after them."""

@@ -20,6 +20,8 @@ from services.estimation.body.tracker import BodyTracker, Posture
 from services.estimation.estimates import OUTPUTS
 from services.estimation.learning import RhythmLearning, start_rhythm
 from services.estimation.parameters import EstimationParameters
+from services.estimation.quality import QualityWatch, Source
+from services.estimation.quality_data import SEEN_BY_A_CAMERA
 from services.estimation.rows import RHYTHM_CHANNELS
 from services.flow.message import Message, Output, Stream
 from services.flow.node import State
@@ -55,6 +57,8 @@ class BodyNode:
         unused = {each.name: "the first camera is used" for each in others}
         unused |= {s.name: "this estimator uses the camera" for hub in description.hubs for s in hub.sensors}
         self._fitted = FittedBody(description, unused, p.body)
+        source = Source(camera.name, camera.rate_hz, None)
+        self._quality = QualityWatch([source], SEEN_BY_A_CAMERA, self._intake.refused_before, p.quality, MODEL)
         self._screen = Screen(description, self._intake, self._tracker, p.live_rate_hz, p.checks.silent_after_s)
 
     @property
@@ -69,16 +73,29 @@ class BodyNode:
         self._marks.note(batch.marks)
         run, frame = Run(), None
         for frame in self._intake.accept(batch, captured_ns):
+            self._tell_quality(frame, run)
             for mark in self._marks.due(frame.captured_ns):
                 self._hear(mark, frame.captured_ns, run)
             self._publish(self._tracker.take(frame), run)
-        return run.finish() + self._picture(captured_ns, frame, run)
+        outputs = run.finish()
+        self._quality.hear(run.unheard())
+        return outputs + self._picture(captured_ns, frame, run)
+
+    def _tell_quality(self, frame: Frame, run: Run) -> None:
+        """What was before this frame, when it is time; then the frame is counted."""
+        if self._quality.is_due(frame.captured_ns):
+            run.close()
+            self._quality.hear(run.unheard())
+            run.outputs += self._quality.due(frame.captured_ns)
+        self._quality.count_frame(frame.captured_ns, used=frame.is_somebody)
 
     def finish(self) -> list[Output]:
         """Follow whoever was waited for."""
         run = Run()
         self._publish(self._tracker.finish(), run)
-        return run.finish() + _learned(self._learning.report())
+        outputs = run.finish()
+        self._quality.hear(run.unheard())
+        return outputs + _learned(self._learning.report()) + self._quality.finish()
 
     def rejections(self) -> list[Rejection]:
         """Counts by camera and reason."""
@@ -128,6 +145,7 @@ class BodyNode:
             "learning": self._learning.snapshot(),
             "fitted": self._fitted.snapshot(),
             "next_ns": self._screen.pace.next_ns,
+            "quality": self._quality.snapshot(),
         }
 
     def restore(self, state: State) -> None:
@@ -139,6 +157,7 @@ class BodyNode:
         self._learning.restore(state["learning"])
         self._fitted.restore(state["fitted"])
         self._screen.pace.next_ns = state["next_ns"]
+        self._quality.restore(state["quality"])
 
 
 def _learned(rhythm: LearnedRhythm | None) -> list[Output]:

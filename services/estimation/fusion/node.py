@@ -5,6 +5,7 @@ from collections.abc import Iterable
 from schemas.health import Rejection
 from schemas.kinematics import Calibration, JointCentres, JointState, LivePose, SegmentMotion
 from schemas.payload import Payload
+from schemas.quality import DataQuality
 from schemas.rhythm import Rhythm
 from schemas.session import SessionDescription
 from schemas.signals import CALIBRATION, IMU, JOINT_CENTRES, JOINT_STATE, LIVE_POSE, RHYTHM, SEGMENT_MOTION
@@ -14,7 +15,9 @@ from services.estimation.estimates import OUTPUTS
 from services.estimation.fusion.fuser import Fuser
 from services.estimation.fusion.merge import MessageMerge
 from services.estimation.fusion.picture import FusedPicture, joined_calibration
+from services.estimation.fusion.quality import FusedQuality
 from services.estimation.lower_body.node import LowerBodyNode
+from services.estimation.parameters import EstimationParameters
 from services.flow.message import Message, Output, Stream
 from services.flow.node import State
 
@@ -40,6 +43,7 @@ class FusionNode:
         self._merge = MessageMerge((*self._inertial.streams, *self._camera.streams), LATENESS_NS)
         self._fuser = Fuser()
         self._picture = FusedPicture(description.anthropometry.height_m)
+        self._quality = FusedQuality(EstimationParameters().quality)
         self._calibrations: dict[str, Calibration] = {}
         self._untold: dict[str, list[StandingMark]] = {"inertial": [], "camera": []}
 
@@ -56,7 +60,8 @@ class FusionNode:
         """Take what waited."""
         outputs = [output for ready in self._merge.finish() for output in self._take(ready)]
         outputs += self._heard("inertial", self._inertial.finish())
-        return outputs + self._heard("camera", self._camera.finish())
+        outputs += self._heard("camera", self._camera.finish())
+        return outputs + self._quality.finish()
 
     def rejections(self) -> list[Rejection]:
         """Of both."""
@@ -83,7 +88,7 @@ class FusionNode:
         outputs: list[Output] = []
         told = list(told)
         rhythms = {tuple(each.payload.captured_ns): each.payload for each in told if isinstance(each.payload, Rhythm)}
-        leads, before_ns = False, self._fuser.last_ns
+        leads, before_ns, heard = False, self._fuser.last_ns, 0
         for output in told:
             payload = output.payload
             if isinstance(payload, JointState):
@@ -93,10 +98,15 @@ class FusionNode:
                 outputs += self._fused(fused)
             elif isinstance(payload, JointCentres):
                 self._picture.place(payload)
+            elif isinstance(payload, DataQuality):
+                self._quality.hear(outputs[heard:])
+                heard = len(outputs)
+                outputs += self._quality.take(source, payload)
             elif output.signal in BESIDE_JOINTS:
                 outputs += [Output(output.signal, output.captured_ns, _since(payload, before_ns))] if leads else []
             else:
                 outputs += self._beside(source, output)
+        self._quality.hear(outputs[heard:])
         return outputs
 
     def _fused(self, joints: JointState | None) -> list[Output]:
@@ -131,6 +141,7 @@ class FusionNode:
             "fuser": self._fuser.snapshot(),
             "picture": self._picture.snapshot(),
             "calibrations": {name: each.model_dump(mode="json") for name, each in self._calibrations.items()},
+            "quality": self._quality.snapshot(),
             "untold": {to: [mark.model_dump() for mark in marks] for to, marks in self._untold.items()},
         }
 
@@ -141,6 +152,7 @@ class FusionNode:
         self._merge.restore(state["merge"])
         self._fuser.restore(state["fuser"])
         self._picture.restore(state["picture"])
+        self._quality.restore(state["quality"])
         self._calibrations = {name: Calibration.model_validate(e) for name, e in state["calibrations"].items()}
         self._untold = {
             to: [StandingMark.model_validate(mark) for mark in marks] for to, marks in state["untold"].items()

@@ -23,6 +23,7 @@ from services.estimation.knee.worn_legs import used_by_knees, worn_legs
 from services.estimation.learning import RhythmLearning, start_rhythm
 from services.estimation.marked_standing import Marks
 from services.estimation.parameters import EstimationParameters
+from services.estimation.quality import QualityWatch, Source
 from services.estimation.rows import RHYTHM_CHANNELS, Row
 from services.estimation.samples import Tick, TickBatch
 from services.estimation.standing import StandingDetector, StandingReference
@@ -66,6 +67,9 @@ class KneeNode:
         self._learning = RhythmLearning()
         self._fitted = FittedLegs(description, self._legs, self._intake.unused, p.knee.axis_change)
         self._screen = Screen(description, self._intake, self._legs, p.live_rate_hz)
+        sources = [Source(sensor.name, sensor.rate_hz, sensor.segment) for sensor in sensors]
+        knees = [f"knee_flexion_{leg.side}" for leg in worn]
+        self._quality = QualityWatch(sources, knees, self._intake.checks.refused_before, p.quality)
         self._has_started = False
         self._first_settled_ns: int | None = None
         self._looked_ns = 0
@@ -91,7 +95,9 @@ class KneeNode:
                 leg.finish()
             if any(leg.is_settled for leg in self._legs):
                 self._start(run)
-        return outputs + run.finish() + _learned(self._learning.report())
+        outputs += run.finish()
+        self._quality.hear(run.unheard())
+        return outputs + _learned(self._learning.report()) + self._quality.finish()
 
     def rejections(self) -> list[Rejection]:
         """Counts by sensor and reason."""
@@ -104,10 +110,21 @@ class KneeNode:
                 self._hear(mark, ticks[0].captured_ns)
             self._marks.watch(ticks)
             for tick in ticks:
+                self._tell_quality(tick, run)
                 self._watch_standing(tick)
                 for instant in self._instants.add(tick):
                     self._advance(instant, run)
-        return run.finish() + self._picture(batch.captured_ns, run)
+        outputs = run.finish()
+        self._quality.hear(run.unheard())
+        return outputs + self._picture(batch.captured_ns, run)
+
+    def _tell_quality(self, tick: Tick, run: "_Run") -> None:
+        """What was before this tick, when it is time; then the tick is counted."""
+        if self._quality.is_due(tick.captured_ns):
+            run.close()
+            self._quality.hear(run.unheard())
+            run.outputs += self._quality.due(tick.captured_ns)
+        self._quality.count((tick,))
 
     def _watch_standing(self, tick: Tick) -> None:
         """Wrong units are seen at rest; a standing that the description marks is the zero."""
@@ -222,6 +239,7 @@ class KneeNode:
             "fitted": self._fitted.snapshot(),
             "times_ns": [self._first_settled_ns, self._looked_ns, self._screen.pace.next_ns],
             "has_started": self._has_started,
+            "quality": self._quality.snapshot(),
         }
 
     def restore(self, state: State) -> None:
@@ -238,6 +256,7 @@ class KneeNode:
         self._fitted.restore(state["fitted"])
         self._first_settled_ns, self._looked_ns, self._screen.pace.next_ns = state["times_ns"]
         self._has_started = state["has_started"]
+        self._quality.restore(state["quality"])
 
 
 class _Run:
@@ -250,22 +269,29 @@ class _Run:
         self.valid: list[bool] = []
         self._observed: list[Segment] = []
         self._rows: list[Row] = []
+        self._heard = 0
 
     def add(self, row: Row, valid: list[bool], observed: list[Segment]) -> None:
         """Take the next row."""
         if self._rows and (valid != self.valid or observed != self._observed or len(self._rows) >= LONGEST_RUN):
-            self._close()
+            self.close()
         self._rows.append(row)
         self.last, self.valid, self._observed = row, valid, observed
 
-    def _close(self) -> None:
-        self.outputs += estimates(self._rows, self.valid, self._observed)
+    def close(self) -> None:
+        """What comes next is not to be in one message with what was before."""
+        if self._rows:
+            self.outputs += estimates(self._rows, self.valid, self._observed)
         self._rows = []
+
+    def unheard(self) -> list[Output]:
+        """The messages since this was asked last."""
+        heard, self._heard = self._heard, len(self.outputs)
+        return self.outputs[heard:]
 
     def finish(self) -> list[Output]:
         """All messages, and what was learned after them."""
-        if self._rows:
-            self._close()
+        self.close()
         return self.outputs + self.learned
 
 

@@ -26,6 +26,8 @@ from services.estimation.lower_body.resting_bias import RestingBias
 from services.estimation.lower_body.segment_motion import LoneSegments
 from services.estimation.marked_standing import Marks
 from services.estimation.parameters import EstimationParameters
+from services.estimation.quality import QualityWatch, Source
+from services.estimation.quality_data import seen_by_sensors
 from services.estimation.rows import INDEX, Row
 from services.estimation.samples import Tick, TickBatch
 from services.estimation.sensor_status import sensor_statuses, sensor_troubles, unused_statuses
@@ -57,6 +59,10 @@ class LowerBodyNode:
         self._learning = RhythmLearning()
         self._marks = Marks(self._intake.sensors, self._parameters.standing, self._parameters.notice_s)
         self._pace = Pace(self._parameters.live_rate_hz)
+        body = worn_segments(description.hubs)
+        sources = [Source(sensor.name, sensor.rate_hz, sensor.segment) for sensor in self._intake.sensors]
+        refused = self._intake.checks.refused_before
+        self._quality = QualityWatch(sources, seen_by_sensors(body), refused, self._parameters.quality)
 
     @property
     def streams(self) -> tuple[Stream, ...]:
@@ -74,8 +80,8 @@ class LowerBodyNode:
         if self._filter is None:
             calibrated = self._calibrator.finish()
             if calibrated is not None:
-                outputs += self._start(calibrated)
-        return outputs + _learned(self._learning.report())
+                outputs += self._heard(self._start(calibrated))
+        return outputs + _learned(self._learning.report()) + self._quality.finish()
 
     def rejections(self) -> list[Rejection]:
         """Counts by sensor and reason."""
@@ -85,10 +91,17 @@ class LowerBodyNode:
         outputs: list[Output] = []
         for marks, ticks in self._marks.runs(batch.ticks):
             for mark in marks:
-                outputs += self._hear(mark, ticks[0].captured_ns)
+                outputs += self._heard(self._hear(mark, ticks[0].captured_ns))
             self._marks.watch(ticks)
-            outputs += self._follow(ticks)
-        return self._wait(batch.captured_ns) if self._filter is None else outputs
+            for run in self._quality.runs(ticks):
+                outputs += self._quality.due(run[0].captured_ns)
+                self._quality.count(run)
+                outputs += self._heard(self._follow(run))
+        return outputs + (self._wait(batch.captured_ns) if self._filter is None else [])
+
+    def _heard(self, outputs: list[Output]) -> list[Output]:
+        self._quality.hear(outputs)
+        return outputs
 
     def _follow(self, run: Sequence[Tick]) -> list[Output]:
         """Until the calibration each tick is looked at by itself: how samples were batched must decide nothing."""
@@ -240,6 +253,7 @@ class LowerBodyNode:
             "learning": self._learning.snapshot(),
             "marks": self._marks.snapshot(),
             "next_live_ns": self._pace.next_ns,
+            "quality": self._quality.snapshot(),
         }
 
     def restore(self, state: State) -> None:
@@ -258,6 +272,7 @@ class LowerBodyNode:
         self._learning.restore(state["learning"])
         self._marks.restore(state["marks"])
         self._pace.next_ns = state["next_live_ns"]
+        self._quality.restore(state["quality"])
 
 
 def _learned(rhythm: LearnedRhythm | None) -> list[Output]:

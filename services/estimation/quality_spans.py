@@ -1,0 +1,84 @@
+"""Seconds of a session by what the estimates were like."""
+
+from collections.abc import Iterable
+
+from schemas.kinematics import JointState
+from schemas.rhythm import Rhythm
+from schemas.vocabulary import BODY_MODELS
+from services.estimation.parameters import QualityParameters
+from services.flow.message import Output
+from services.flow.node import State
+
+
+class Spans:
+    """Seconds of rows, by how they are: in which all that is needed was seen, the person moved, the rhythm held."""
+
+    def __init__(self, model: str, needed: Iterable[str], parameters: QualityParameters) -> None:
+        order = [dof.name for dof in BODY_MODELS[model]]
+        self._needed = [order.index(name) for name in needed]
+        self._parameters = parameters
+        self._last_ns: int | None = None
+        self._flexions = [i for i in self._needed if "flexion" in order[i]] or self._needed
+        self._moving_pace = parameters.moving_pace if model == "lower_body" else parameters.moving_pace_camera
+        self._pace = 0.0  # rad/s, mean |rate| of the flexions, smoothed
+        self.total_ns = {"spanned": 0, "estimated": 0, "moving": 0, "locked": 0}
+
+    def take(self, joints: JointState, rhythm: Rhythm | None) -> None:
+        """Rows of one message, with their rhythm where it was told."""
+        p, total = self._parameters, self.total_ns
+        longest_ns, count = round(p.longest_row_s * 1e9), len(self._flexions)
+        seen = all(joints.valid[i] for i in self._needed)
+        for now_ns, velocity, is_locked in zip(
+            joints.captured_ns, joints.velocity, _locked(joints, rhythm), strict=True
+        ):
+            since_ns = 0 if self._last_ns is None else now_ns - self._last_ns
+            self._last_ns = now_ns
+            total["spanned"] += since_ns
+            if since_ns > longest_ns:
+                continue
+            pace = sum([abs(velocity[i]) for i in self._flexions]) / count
+            self._pace += since_ns * 1e-9 / p.pace_s * (pace - self._pace)
+            if seen:
+                total["estimated"] += since_ns
+            if self._pace > self._moving_pace:
+                total["moving"] += since_ns
+            if is_locked:
+                total["locked"] += since_ns
+
+    def seconds(self) -> dict[str, float]:
+        """The sums so far, s, by the fields of a DataQuality."""
+        return {f"{name}_s": round(ns * 1e-9, 9) for name, ns in self.total_ns.items()}
+
+    def snapshot(self) -> State:
+        """Times and sums, ns."""
+        return {"last_ns": self._last_ns, "pace": self._pace, "total_ns": dict(self.total_ns)}
+
+    def restore(self, state: State) -> None:
+        """Inverse of `snapshot`."""
+        self._last_ns, self._pace = state["last_ns"], state["pace"]
+        self.total_ns = dict(state["total_ns"])
+
+
+def take_outputs(spans: Spans, outputs: Iterable[Output]) -> None:
+    """Joint states among some outputs, each with the rhythm that follows it."""
+    joints: JointState | None = None
+    for output in outputs:
+        payload = output.payload
+        if isinstance(payload, Rhythm) and joints is not None:
+            spans.take(joints, payload)
+            joints = None
+        elif isinstance(payload, JointState):
+            if joints is not None:
+                spans.take(joints, None)
+            joints = payload
+    if joints is not None:
+        spans.take(joints, None)
+
+
+def _locked(joints: JointState, rhythm: Rhythm | None) -> list[bool]:
+    if rhythm is None:
+        return [False] * len(joints.captured_ns)
+    if rhythm.captured_ns == joints.captured_ns:
+        return rhythm.locked
+    known = dict(zip(rhythm.captured_ns, rhythm.locked, strict=True))
+    return [known.get(captured_ns, False) for captured_ns in joints.captured_ns]
