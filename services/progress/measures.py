@@ -4,6 +4,8 @@ import math
 from dataclasses import dataclass
 from enum import StrEnum
 
+from services.definitions.table import DEFINITIONS
+
 
 class Better(StrEnum):
     """Which way a measure gets better, where that can be said of every patient."""
@@ -47,13 +49,16 @@ ORDER = (
     "stride_length",
     "step_length",
     "stance_fraction",
-    "double_support",
+    "double_support_fraction",
     "step_time",
 )
 """First in every answer, in this order (clinical conventions, section 10.3); the others follow in their own."""
 
-_NOT_FOLLOWED_STARTS = ("strides_", "rhythm_", "tug_attempts")
+_NOT_FOLLOWED_STARTS = ("strides_", "rhythm_", "tug_attempts", "repetitions_")
 """Counts say how much was seen, and distances from an earlier visit are no property of this one."""
+
+_EXPORT_ONLY = frozenset(definition.name for definition in DEFINITIONS if definition.export_only)
+"""One symmetry is followed, the ratio; the others are for files."""
 
 
 def measure_of(name: str) -> Measure:
@@ -76,7 +81,7 @@ def measure_of(name: str) -> Measure:
 
 def is_followed(name: str) -> bool:
     """Whether a metric is compared between visits."""
-    return not name.startswith(_NOT_FOLLOWED_STARTS)
+    return name not in _EXPORT_ONLY and not name.startswith(_NOT_FOLLOWED_STARTS)
 
 
 def place(name: str) -> int:

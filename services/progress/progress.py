@@ -7,6 +7,7 @@ from schemas.conditions import SpeedInstruction
 from schemas.population import Population
 from schemas.vocabulary import Side, Task
 from services.progress.baseline import Baseline, TestBaseline
+from services.progress.curves import CurveVisit, curve_visits
 from services.progress.likeness import differences, unsaid
 from services.progress.measures import is_followed, measure_of, place
 from services.progress.points import Point, point
@@ -20,10 +21,11 @@ Test = tuple[Task, SpeedInstruction | None]
 
 @dataclass(frozen=True, slots=True)
 class Progress:
-    """Series by measure, and joints, of every test that was done."""
+    """Series by measure, joints and curves, of every test that was done."""
 
     series: list[Series]
     joints: list[JointRecovery]
+    curves: list[CurveVisit]
 
 
 @dataclass(frozen=True, slots=True)
@@ -49,7 +51,11 @@ def progress(visits: Sequence[Visit], baseline: Baseline | None, person: Person,
     """Everything, or that of one task."""
     found = [test for test in _tests(visits) if task is None or test[0] is task]
     told = [_of_test(test, visits, baseline, person) for test in found]
-    return Progress([each for one, _ in told for each in one], [each for _, joints in told for each in joints])
+    return Progress(
+        [each for one in told for each in one.series],
+        [each for one in told for each in one.joints],
+        [each for one in told for each in one.curves],
+    )
 
 
 def _tests(visits: Sequence[Visit]) -> list[Test]:
@@ -62,9 +68,7 @@ def _tests(visits: Sequence[Visit]) -> list[Test]:
     return list(dict.fromkeys(done))
 
 
-def _of_test(
-    test: Test, visits: Sequence[Visit], baseline: Baseline | None, person: Person
-) -> tuple[list[Series], list[JointRecovery]]:
+def _of_test(test: Test, visits: Sequence[Visit], baseline: Baseline | None, person: Person) -> Progress:
     trials = _trials(test, visits)
     base = None if baseline is None else baseline.test(*test)
     first = None if base is None else next((t for _, t in trials if t.session == base.sessions[0]), None)
@@ -73,7 +77,8 @@ def _of_test(
         series(frame, measure_of(name), side, unit, _points(trials, name, side, first))
         for name, side, unit in _measures(trials)
     ]
-    return found, _joints(trials, first, frame, found, person)
+    alike = [] if first is None else _alike(trials, first, frame.start)
+    return Progress(found, _joints(alike, found, person), curve_visits(alike))
 
 
 def _trials(test: Test, visits: Sequence[Visit]) -> list[tuple[Visit, Trial]]:
@@ -137,21 +142,24 @@ def _outdated(baseline: Baseline, person: Person) -> dict[str, Rule]:
     return outdated
 
 
-def _joints(
-    trials: Sequence[tuple[Visit, Trial]], first: Trial | None, frame: Frame, found: Sequence[Series], person: Person
-) -> list[JointRecovery]:
-    if first is None:
-        return []
+def _alike(trials: Sequence[tuple[Visit, Trial]], first: Trial, start: int) -> list[tuple[Visit, list[Trial]]]:
+    """Visits from the baseline on, with their trials that are like its first one."""
     alike: dict[int, tuple[Visit, list[Trial]]] = {}
     for visit, trial in trials:
-        if visit.number >= frame.start and not unsaid(trial) and not differences(trial, first, "rad"):
+        if visit.number >= start and not unsaid(trial) and not differences(trial, first, "rad"):
             alike.setdefault(visit.number, (visit, []))[1].append(trial)
+    return list(alike.values())
+
+
+def _joints(
+    alike: Sequence[tuple[Visit, Sequence[Trial]]], found: Sequence[Series], person: Person
+) -> list[JointRecovery]:
     names = dict.fromkeys(
-        side.joint for _, each in alike.values() for trial in each if trial.metrics for side in trial.metrics.sides
+        side.joint for _, trials in alike for trial in trials if trial.metrics for side in trial.metrics.sides
     )
     speed = next((each for each in found if each.measure == "walking_speed"), None)
     others = [each for each in found if each.measure in OTHER_MOTIONS and _counts(each.side, person.paretic_side)]
-    told = [joint_recovery(joint, list(alike.values()), speed, others) for joint in names]
+    told = [joint_recovery(joint, alike, speed, others) for joint in names]
     return [each for each in told if each is not None]
 
 

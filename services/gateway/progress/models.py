@@ -7,7 +7,7 @@ from pydantic import BaseModel, ConfigDict, Field
 from schemas.conditions import SpeedInstruction
 from schemas.metrics import TrustGrade
 from schemas.population import Population
-from schemas.vocabulary import Task
+from schemas.vocabulary import Side, Task
 from services.progress.measures import Better
 from services.progress.rules import Direction, JointWord, RuleCode, Verdict
 from services.progress.thresholds import Occasion
@@ -154,12 +154,34 @@ class JointRecoveryOut(Shape):
     rules: list[RuleOut] = Field(description="what the word comes from")
 
 
+class CurveDistanceOut(Shape):
+    """Sagittal curve distance (4 variables); a trend within the patient only, never the GPS."""
+
+    distance: float | None = Field(description="rad, over all four; null where one is missing", examples=[0.09])
+    by_variable: dict[str, float] = Field(description="rad, root mean square", examples=[{"knee_flexion": 0.11}])
+    missing: list[str] = Field(description="of the four variables", examples=[["ankle_dorsiflexion"]])
+
+
+class CurveVisitOut(Shape):
+    """Curves of one leg at one visit, set against the patient's own."""
+
+    task: Task = Field(examples=["walk"])
+    instruction: SpeedInstruction | None
+    side: Side = Field(examples=["left"])
+    visit: int = Field(description="number of the visit", examples=[3])
+    day: date = Field(examples=["2026-11-22"])
+    sessions: list[str] = Field(description="the trials", examples=[["8d0c2a71f04be655"]])
+    from_baseline: CurveDistanceOut | None = Field(description="null at the baseline itself")
+    from_other_leg: CurveDistanceOut
+
+
 class ProgressOut(Shape):
     """All that is said of a patient's progress."""
 
     patient: str = Field(description="patient code", examples=["K7QM3F"])
     series: list[SeriesOut] = Field(description="by test; within it, speed first")
     joint_recovery: list[JointRecoveryOut] = Field(description="empty where one leg is seen")
+    curve_distance: list[CurveVisitOut] = Field(description="by visit and leg, from the baseline on")
 
 
 class BaselineIn(BaseModel):

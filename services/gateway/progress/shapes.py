@@ -4,6 +4,7 @@ from datetime import datetime
 
 from services.gateway.progress.models import (
     BaselineOut,
+    CurveVisitOut,
     JointRecoveryOut,
     MdcOut,
     ProgressOut,
@@ -21,6 +22,7 @@ def progress_out(patient: str, found: Progress) -> ProgressOut:
         patient=patient,
         series=[SeriesOut.model_validate(each) for each in found.series],
         joint_recovery=[JointRecoveryOut.model_validate(each) for each in found.joints],
+        curve_distance=[CurveVisitOut.model_validate(each) for each in found.curves],
     )
 
 
