@@ -8,14 +8,15 @@ from rich.console import Console
 from rich.progress import BarColumn, Progress, TextColumn, TimeRemainingColumn
 
 from schemas.gait import GaitEvent, Stride
-from schemas.kinematics import JointState
+from schemas.kinematics import Calibration, JointState
 from schemas.metrics import SessionMetrics
 from schemas.rhythm import LearnedRhythm
-from schemas.vocabulary import BODY_MODELS
-from services.cli import tables
+from schemas.session import SessionDescription
 from services.cli.assembly import build_chain
 from services.cli.interrupt import on_interrupt
 from services.cli.rhythms import FILE_NAME
+from services.exports.facts import STRIDES_AND_STEPS, Facts
+from services.exports.tables.csv_file import CsvFile
 from services.flow.chain import Chain
 from services.flow.message import Message
 from services.flow.software import SOFTWARE
@@ -23,29 +24,31 @@ from services.ingest.choices import AS_THE_SOURCE_SAYS, Choices
 from services.ingest.driver import LiveSource
 from services.ingest.source import Source, iter_messages, open_chosen
 
+TABLES = ("joint_angles", "events", "strides")
+
 
 class RunFiles:
     """The result files of one run."""
 
-    def __init__(self, folder: Path) -> None:
+    def __init__(self, folder: Path, description: SessionDescription) -> None:
         folder.mkdir(parents=True, exist_ok=True)
         self.folder = folder
-        self.angles = tables.joint_angle_table(folder / "joint_angles.csv", next(iter(BODY_MODELS)))
-        self.events = tables.event_table(folder / "events.csv")
-        self.strides = tables.stride_table(folder / "strides.csv")
+        self._description = description
+        self._files = [(folder / f"{name}.csv").open("w", newline="", encoding="utf-8") for name in TABLES]
+        facts = Facts(description, None, SOFTWARE)
+        self._tables = [CsvFile(file, name, facts) for file, name in zip(self._files, TABLES, strict=True)]
         self.metrics: SessionMetrics | None = None
         self.rhythm: LearnedRhythm | None = None
 
     def take(self, message: Message) -> None:
         """File one message of the chain."""
         match message.payload:
-            case JointState() as state:
-                for row in tables.joint_angle_rows(state):
-                    self.angles.write(row)
-            case GaitEvent() as event:
-                self.events.write(tables.event_row(event))
-            case Stride() as stride:
-                self.strides.write(tables.stride_row(stride))
+            case JointState() | GaitEvent() | Stride():
+                for table in self._tables:
+                    table.take(message.payload)
+            case Calibration() as calibration:
+                for table in self._tables:
+                    table.calibrated(Facts(self._description, calibration, SOFTWARE))
             case SessionMetrics() as metrics:
                 self.metrics = metrics
             case LearnedRhythm() as rhythm:
@@ -53,9 +56,9 @@ class RunFiles:
 
     def close(self, header: dict[str, Any]) -> None:
         """Finish the tables, write metrics.json and, if a rhythm was learned, its file."""
-        for table in (self.angles, self.events, self.strides):
-            with table:
-                pass
+        for table, file in zip(self._tables, self._files, strict=True):
+            table.close()
+            file.close()
         body = {} if self.metrics is None else json.loads(self.metrics.model_dump_json())
         (self.folder / "metrics.json").write_text(json.dumps(header | body, indent=2) + "\n", encoding="utf-8")
         if self.rhythm is not None:
@@ -70,7 +73,7 @@ def run(spec: str, folder: Path, console: Console, choices: Choices = AS_THE_SOU
     source = open_chosen(spec, choices)
     description = source.describe()
     chain = build_chain(description)
-    files = RunFiles(folder)
+    files = RunFiles(folder, description)
     columns = (TextColumn("{task.description}"), BarColumn(), TextColumn("{task.fields[at]}"), TimeRemainingColumn())
     stop = source.stop if isinstance(source, LiveSource) else None
     with on_interrupt(stop), Progress(*columns, console=console, transient=True) as progress:
@@ -99,6 +102,6 @@ def _header(source: Source, chain: Chain) -> dict[str, Any]:
         "task": description.task,
         "walkway_m": description.walkway_m,
         "known_rhythms": [{"kind": known.kind, "name": known.name} for known in description.known_rhythms],
-        "definitions": tables.STRIDE_DEFINITION,
+        "definitions": STRIDES_AND_STEPS,
         "rejections": [rejection.model_dump(mode="json") for rejection in rejections],
     }

@@ -1,0 +1,1 @@
+"""OpenSim: coordinates as .mot and .sto, joint centres as .trc. Nothing here imports OpenSim."""

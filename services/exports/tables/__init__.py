@@ -1,0 +1,1 @@
+"""Tables as CSV whose first lines say what each column is."""
