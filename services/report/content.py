@@ -33,6 +33,7 @@ class QualityLine(Shown):
     """How far the whole session may be relied on, in one line."""
 
     grade: TrustGrade | None = Field(description="null where nothing is known of the data", examples=["good"])
+    head: str = Field(examples=["Data quality"])
     word: str = Field(description="the grade as a word, so that no colour carries it alone", examples=["Good"])
     text: str = Field(examples=["0.4 % of the samples lost; 38 of 42 strides used"])
     warnings: list[str] = Field(examples=[["The left thigh sensor was silent for 2.1 s."]])
@@ -62,6 +63,7 @@ class Cell(Shown):
     text: str = Field(examples=["1.12 m/s"])
     note: str | None = Field(description="smaller, below the text: spread, trust, or why there is no number")
     tone: Tone = Field(examples=["plain"])
+    span: int = Field(ge=1, description="number of columns it takes; a value of the whole body takes both sides'")
 
 
 class Column(Shown):
@@ -73,7 +75,7 @@ class Column(Shown):
 
 
 class Row(Shown):
-    """One row: its head, then as many cells as there are columns after the first."""
+    """One row: its head, then cells that take together as many columns as there are after the first."""
 
     head: str = Field(examples=["Walking speed"])
     note: str | None = Field(description="smaller, beside the head: a unit or a definition")

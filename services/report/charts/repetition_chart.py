@@ -1,0 +1,56 @@
+"""The range of each repetition as a bar, in order; what does not count is an empty bar."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+from schemas.vocabulary import Side
+from services.report.charts.axes import Plot, digits_of, draw_axes, ticks
+from services.report.charts.canvas import Box, Canvas
+from services.report.charts.colours import SIDE, SOFT_INK, WHITE, WHOLE
+
+WIDTH, HEIGHT = 340.0, 120.0
+LEFT, TOP, RIGHT, BOTTOM = 26.0, 13.0, 6.0, 24.0
+MOST_LABELS = 12
+WIDEST_SHARE = 0.7
+"""Share of a repetition's room that its bar takes."""
+
+
+@dataclass(frozen=True, slots=True)
+class RepetitionBar:
+    """One repetition: whose, its range in degrees, and whether it counts."""
+
+    side: Side | None
+    extent_deg: float
+    counts: bool
+
+
+@dataclass(frozen=True, slots=True)
+class RepetitionLabels:
+    """Words of the chart in the report's language."""
+
+    title: str
+    description: str
+    x_axis: str
+    y_axis: str
+    decimal_mark: str
+
+
+def repetition_chart(name: str, bars: Sequence[RepetitionBar], labels: RepetitionLabels) -> str:
+    """The chart as SVG. `name` is its id on the page."""
+    canvas = Canvas(WIDTH, HEIGHT)
+    y_ticks = ticks(0.0, max(bar.extent_deg for bar in bars), 4)
+    room = max(len(bars), 6)
+    plot = Plot(Box(LEFT, TOP, WIDTH - RIGHT, HEIGHT - BOTTOM), (0.4, room + 0.6), (0.0, y_ticks[-1]))
+    digits = digits_of(y_ticks[1])
+    texts = [f"{value:.{digits}f}".replace(".", labels.decimal_mark) for value in y_ticks]
+    step = max(1, -(-len(bars) // MOST_LABELS))
+    numbers = [(number, str(number)) for number in range(1, len(bars) + 1) if (number - 1) % step == 0]
+    draw_axes(canvas, plot, list(zip(y_ticks, texts, strict=True)), numbers)
+    for number, bar in enumerate(bars, start=1):
+        colour = WHOLE if bar.side is None else SIDE[bar.side]
+        left, right = plot.across(number - WIDEST_SHARE / 2), plot.across(number + WIDEST_SHARE / 2)
+        box = Box(left, plot.up(bar.extent_deg), right, plot.box.bottom)
+        canvas.rectangle(box, colour if bar.counts else WHITE, colour)
+    canvas.text((0, 7.5), labels.y_axis, colour=SOFT_INK)
+    canvas.text((WIDTH - RIGHT, HEIGHT - 3), labels.x_axis, anchor="end", colour=SOFT_INK)
+    return canvas.svg(name, labels.title, labels.description)
