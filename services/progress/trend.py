@@ -31,7 +31,7 @@ def trend(days: Sequence[float], values: Sequence[Estimate]) -> Trend | None:
     (n - 2)) / S: visits that scatter more than their intervals say widen it. Interval by Student's t with n - 2.
     """
     count = len(values)
-    if count < LEAST_VISITS:
+    if count < LEAST_VISITS or max(days) == min(days):
         return None
     widest = max(each.half for each in values)
     # A visit without any stated error would take the whole weight.
@@ -40,8 +40,6 @@ def trend(days: Sequence[float], values: Sequence[Estimate]) -> Trend | None:
     middle = sum(w * day for w, day in zip(weights, days, strict=True)) / total
     mean = sum(w * each.value for w, each in zip(weights, values, strict=True)) / total
     spread = sum(w * (day - middle) ** 2 for w, day in zip(weights, days, strict=True))
-    if spread <= 0:
-        return None
     product = sum(w * (d - middle) * (x.value - mean) for w, d, x in zip(weights, days, values, strict=True))
     slope = product / spread
     misfit = sum(

@@ -19,7 +19,7 @@ class SetKind(StrEnum):
 
 
 class Manifest(Payload):
-    """`manifest.toml`: all that a screen prints of a set."""
+    """`manifest.toml`: all that a screen prints of a set. What TOML cannot say, null, is said by leaving it out."""
 
     model_config = ConfigDict(frozen=True, allow_inf_nan=False, extra="forbid")
 
@@ -30,10 +30,12 @@ class Manifest(Payload):
     licence: str = Field(min_length=1, max_length=200)
     citation: str = Field(min_length=1, max_length=500)
     population: Population
-    n: int | None = Field(gt=0, description="people in the set; null: not stated in the source read")
+    n: int | None = Field(default=None, gt=0, description="people in the set; null: not stated in the source read")
     ages: str = Field(min_length=1, max_length=200, description="who they were, in the source's words")
     sensor: str = Field(min_length=1, max_length=200, description="what it was measured with")
-    datum: str | None = Field(max_length=200, description="what an angle of zero means; null: the set has no angles")
+    datum: str | None = Field(
+        default=None, max_length=200, description="what an angle of zero means; null: the set has no angles"
+    )
     notes: str = Field(max_length=1000)
 
 
