@@ -14,6 +14,7 @@ from schemas.session import WalkPath
 from schemas.vocabulary import ESTIMATORS, Task
 from services.cli.console import err, out, told
 from services.cli.export import export
+from services.cli.reprocess.command import reprocess
 from services.cli.send_skeletons import send_skeletons
 from services.cli.tune import tune
 from services.ingest.choices import Choices
@@ -207,6 +208,7 @@ def synth(
 
 app.command()(send_skeletons)
 app.command()(export)
+app.command()(reprocess)
 
 
 @app.command(context_settings={"ignore_unknown_options": True})

@@ -25,6 +25,19 @@ def segment_files(folder: Path) -> list[tuple[SegmentName, Path]]:
     return sorted(found, key=lambda item: (item[0].version or "", item[0].number, item[0].part))
 
 
+def derived_versions(folder: Path) -> list[str]:
+    """Versions of which there are closed derived files, the one written live first, then in the order they were stored.
+
+    Where no manifest tells the order, by name.
+    """
+    found = {name.version for name, _ in segment_files(folder) if name.version is not None and not name.part}
+    manifest = read_manifest(folder)
+    told = [] if manifest is None else [parse_file_name(entry.name) for entry in manifest.files]
+    live = [] if manifest is None else [manifest.derived_version]
+    listed = dict.fromkeys([*live, *(name.version for name in told if name is not None and name.version is not None)])
+    return [version for version in (*listed, *sorted(found - listed.keys())) if version in found]
+
+
 def read_manifest(folder: Path) -> Manifest | None:
     """The manifest of a folder; None when there is none or it cannot be read."""
     try:

@@ -83,7 +83,9 @@ def open_recording(folder: Path, derived_version: str | None = None, limits: Rea
     description = next((found.description for found in scans if found.description is not None), None)
     if description is None:
         raise NotARecording(f"{folder.name} holds no file of a recorded session")
-    return _joined(folder, description, scans, limits)
+    recording = _joined(folder, description, scans, limits)
+    recording.problem = recording.problem or _missing(folder, version, {path.name for path in files})
+    return recording
 
 
 def _live_version(folder: Path) -> str | None:
@@ -107,7 +109,6 @@ def _joined(folder: Path, description: SessionDescription, scans: list[SegmentSc
     for kind in ("raw", "derived"):
         problem = _join(recording, [found for found in scans if found.path.name.startswith(kind)])
         recording.problem = recording.problem or problem
-    recording.problem = recording.problem or _missing(folder, {found.path.name for found in scans})
     return recording
 
 
@@ -140,13 +141,13 @@ def _follows(known: Ledger, new: Ledger) -> bool:
     return all(span.first_sequence <= (known.expected(span.stream, span.epoch) or 0) for span in new.spans())
 
 
-def _missing(folder: Path, present: set[str]) -> DamagedRecording | None:
+def _missing(folder: Path, version: str | None, present: set[str]) -> DamagedRecording | None:
     manifest = read_manifest(folder)
     if manifest is None:
         return None
     for entry in manifest.files:
         name = parse_file_name(entry.name)
-        if name and name.version in (None, manifest.derived_version) and entry.name not in present:
+        if name and name.version in (None, version) and entry.name not in present:
             return DamagedRecording(folder / entry.name, "the file is missing")
     return None
 

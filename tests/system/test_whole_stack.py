@@ -19,8 +19,10 @@ from services.bus.connection import Bus
 from services.bus.settings import BusSettings
 from services.cli import live
 from services.cli.assembly import build_chain
+from services.cli.reprocess.recompute import open_archived, recompute
 from services.cli.supervisor import Supervisor
 from services.flow.message import Message, encode_payload
+from services.flow.software import VERSION
 from services.ingest.source import iter_messages, open_source
 from services.recordings.reader import open_recording
 
@@ -214,3 +216,13 @@ def test_an_archive_gives_its_own_results_again(stack, played):
     assert len(again) == sum(signal.archived == "derived" for signal in SIGNALS)
     for name, messages in again.items():
         assert messages == archived[name], name
+
+
+def test_reprocessing_what_the_same_software_archived_says_identical(stack, played):
+    _, description = played
+    stack.archived(description.session)
+    result = recompute(open_archived(stack.data / description.session))
+    assert (result.stored_version, result.same_software) == (VERSION, True)
+    assert (result.same_messages, result.differing, result.notes) == (True, [], [])
+    assert result.stored == result.metrics
+    assert result.metrics.final

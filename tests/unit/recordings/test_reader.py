@@ -12,7 +12,7 @@ from services.archive.parameters import PARAMETERS
 from services.archive.writer import SessionWriter
 from services.flow.message import DecodeError
 from services.recordings.errors import DamagedRecording, NotARecording
-from services.recordings.folder import read_manifest, verify
+from services.recordings.folder import derived_versions, read_manifest, verify
 from services.recordings.ledger import Ledger
 from services.recordings.reader import open_recording
 
@@ -175,3 +175,25 @@ def test_a_file_under_way_is_readable_by_the_library_too(recorded, tape):
         for _, channel, message in NonSeekingReader(file).iter_messages(log_time_order=False):
             seen.append((channel.topic, message.sequence))
     assert seen == [("session/ingest", 0), *(("imu/hub", place) for place in range(50))]
+
+
+def test_another_version_of_the_derived_files_is_read_by_its_name(recorded, tape):
+    """The one that was written live is not missed then."""
+    folder = recorded([*tape.walk(5), *tape.walk(5, tape.joints)])
+    assert derived_versions(folder) == ["0.1.0"]
+    (folder / "derived-0.1.0.mcap").rename(folder / "derived-0.1.0+1f2e3d4c.mcap")
+    assert derived_versions(folder) == ["0.1.0+1f2e3d4c"]
+    read_until_error(folder)
+    assert len(read(folder, derived_version="0.1.0+1f2e3d4c")) == 10
+    assert "missing" in str(open_recording(folder).problem)
+    assert "derived" in open_recording(folder).problem.path.name
+
+
+def test_versions_come_in_the_order_in_which_they_were_stored(recorded, tape):
+    folder = recorded([*tape.walk(5), *tape.walk(5, tape.joints)])
+    for version in ("0.0.9+ffffffff", "0.2.0"):
+        (folder / f"derived-{version}.mcap").write_bytes((folder / "derived-0.1.0.mcap").read_bytes())
+    (folder / "derived-0.3.0.mcap.part").touch()
+    assert derived_versions(folder) == ["0.1.0", "0.0.9+ffffffff", "0.2.0"]
+    (folder / "manifest.json").unlink()
+    assert derived_versions(folder) == ["0.0.9+ffffffff", "0.1.0", "0.2.0"]

@@ -1,0 +1,1 @@
+"""`ambula reprocess`: archived sessions computed anew, beside what was computed then."""

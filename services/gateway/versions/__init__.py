@@ -1,0 +1,1 @@
+"""Results of a session by the software that computed them."""

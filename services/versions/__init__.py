@@ -1,0 +1,1 @@
+"""What two versions of the software make of the same session."""
