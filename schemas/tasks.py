@@ -12,7 +12,8 @@ class TaskPhase(Payload):
     """One phase of a timed test. Sent when it begins, with `end_ns` null, and again when it has ended.
 
     A phase that was given up ends where it was last seen, with `end_std_s` null. What was done in it stands in the
-    message that ends it.
+    message that ends it. Phases of a ten-metre walk are told a last time when the whole of it is known: the newest
+    message of an attempt and phase holds.
     """
 
     task: Task
@@ -29,12 +30,17 @@ class TaskPhase(Payload):
     steps: int | None = Field(ge=0, description="number of steps of both legs; null unless both shanks are seen")
     distance_m: float | None = Field(ge=0, description="m walked in it; null where it was not measured")
     distance_std_m: float | None = Field(ge=0, description="m, one standard deviation")
+    speed_change: float | None = Field(
+        description="m/s, mean speed over the second half of its distance minus that over the first; null: not known"
+    )
 
     @model_validator(mode="before")
     @classmethod
     def _of_an_older_writer(cls, fields: Any) -> Any:
-        """Earlier ones told the times alone, then no distances."""
-        names = ("largest_turn_rate", "largest_thigh_rate", "steps", "distance_m", "distance_std_m")
+        """Earlier ones told the times alone, then no distances, then no change of speed."""
+        names = (
+            "largest_turn_rate", "largest_thigh_rate", "steps", "distance_m", "distance_std_m", "speed_change"
+        )  # fmt: skip
         unknown = dict.fromkeys(names)
         return {**unknown, **fields} if isinstance(fields, dict) else fields
 

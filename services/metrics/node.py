@@ -3,21 +3,25 @@
 from schemas.gait import Stride
 from schemas.health import Rejection
 from schemas.metrics import Metric, SessionMetrics
+from schemas.quality import DataQuality
 from schemas.rhythm import LearnedRhythm
 from schemas.session import SessionDescription
-from schemas.signals import LEARNED_RHYTHM, METRICS, REPETITION, STRIDE, TASK_PHASE, Signal
+from schemas.signals import DATA_QUALITY, LEARNED_RHYTHM, METRICS, REPETITION, STRIDE, TASK_PHASE, Signal
 from schemas.tasks import Repetition, TaskPhase
 from schemas.vocabulary import Segment, Side, Task
 from services.biomech.event_sources import worn_segments
 from services.flow.message import Message, Output, Stream
 from services.flow.node import Node, State
 from services.flow.software import SOFTWARE
-from services.metrics.attempts import AttemptTotals
 from services.metrics.exercises import SIDES_OF, ExerciseTotals
+from services.metrics.marching import MarchingTotals
 from services.metrics.parameters import MetricsParameters
 from services.metrics.repetitions import RepetitionTotals
 from services.metrics.rhythms import rhythm_metrics
 from services.metrics.session_totals import SessionTotals
+from services.metrics.shared_errors import SharedErrors
+from services.metrics.trust import Trust
+from services.metrics.walking_tests import TimedTestTotals, timed_test_totals
 
 DEFAULTS = MetricsParameters()
 
@@ -25,16 +29,17 @@ DEFAULTS = MetricsParameters()
 class MetricsNode:
     """Metrics after each stride of both feet, and the final ones at the end.
 
-    When only one foot is seen, they come after every second stride of that foot. Learned rhythms are compared in the
-    final ones only: until both streams have ended, it depends on chance which of them has come further. For the same
-    reason a session with an exercise tells of the exercise alone, after each repetition, until it ends, and one with a
-    timed up and go of its attempts, after each phase. A task of the whole body has no metrics of a walk at all.
+    When only one foot is seen, they come after every second stride of that foot. Learned rhythms are compared, and the
+    quality of the data is heeded, in the final ones only: until all streams have ended, it depends on chance which of
+    them has come further. For the same reason a session with an exercise tells of the exercise alone, after each repetition, until it ends, and one with a
+    timed test of that test, after each phase. A task of the whole body has no metrics of a walk at all.
     """
 
     outputs: tuple[Signal, ...] = (METRICS,)
     streams: tuple[Stream, ...] = (
         Stream(STRIDE, "segmentation"),
         Stream(LEARNED_RHYTHM, "estimation"),
+        Stream(DATA_QUALITY, "estimation"),
         Stream(TASK_PHASE, "segmentation"),
         Stream(REPETITION, "segmentation"),
     )
@@ -47,11 +52,13 @@ class MetricsNode:
         self._parameters = parameters
         self._known = description.known_rhythms
         self._learned: LearnedRhythm | None = None
-        self._totals = SessionTotals(description.conditions.paretic_side)
+        self._quality: DataQuality | None = None
+        self._totals = _totals(description, parameters)
+        self._trust = Trust(description)
         self._is_exercise = description.task is Task.KNEE_FLEXION or description.task in SIDES_OF
         self._walks = description.task not in SIDES_OF
         self._repetitions = _repetitions(description, parameters)
-        self._attempts = AttemptTotals(parameters) if description.task is Task.TIMED_UP_AND_GO else None
+        self._attempts = timed_test_totals(description, parameters)
         self._unreported = dict.fromkeys(Side, 0)
         self._captured_ns = 0
         self._repeated_ns = 0
@@ -66,6 +73,8 @@ class MetricsNode:
             return self._take_phase(stride, message.envelope.captured_ns, self._attempts)
         if isinstance(stride, LearnedRhythm):
             self._learned = stride
+        if isinstance(stride, DataQuality):
+            self._quality = stride
         if not isinstance(stride, Stride) or not self._walks:
             return []
         self._captured_ns = max(self._captured_ns, message.envelope.captured_ns)
@@ -80,15 +89,15 @@ class MetricsNode:
     def _take_repetition(self, repetition: Repetition, captured_ns: int) -> list[Output]:
         self._repetitions.add(repetition)
         self._repeated_ns = max(self._repeated_ns, captured_ns)
-        metrics = self._repetitions.metrics()
+        metrics = self._trust.judged(self._repetitions.metrics(), None, {})
         payload = _so_far(self._repeated_ns, metrics, [])
         return [Output(METRICS, self._repeated_ns, payload)]
 
-    def _take_phase(self, phase: TaskPhase, captured_ns: int, attempts: AttemptTotals) -> list[Output]:
+    def _take_phase(self, phase: TaskPhase, captured_ns: int, attempts: TimedTestTotals) -> list[Output]:
         self._tested_ns = max(self._tested_ns, captured_ns)
         if not attempts.add(phase):
             return []
-        metrics, phases = attempts.metrics(final=False), list(attempts.phases)
+        metrics, phases = self._trust.judged(attempts.metrics(final=False), None, {}), list(attempts.phases)
         payload = _so_far(self._tested_ns, metrics, phases)
         return [Output(METRICS, self._tested_ns, payload)]
 
@@ -98,23 +107,29 @@ class MetricsNode:
 
     def _report(self, *, final: bool) -> Output:
         captured_ns, attempts = max(self._captured_ns, self._repeated_ns, self._tested_ns), self._attempts
+        quality = self._quality if final else None
         payload = SessionMetrics(
             captured_ns=captured_ns,
             final=final,
             software=SOFTWARE,
-            metrics=[
-                *self._repetitions.metrics(),
-                *([] if attempts is None else attempts.metrics(final=final)),
-                *([] if self._is_exercise else self._totals.metrics(self._parameters)),
-                *(rhythm_metrics(self._learned if final else None, self._known, final=final) if self._walks else []),
-            ],
+            metrics=self._trust.judged(self._metrics(final=final), quality, self._totals.rejected_shares()),
             curves=self._totals.curves(self._parameters),
-            sides=[],
-            quality=None,
+            sides=self._totals.sides(self._parameters),
+            quality=quality,
             phases=[] if attempts is None else list(attempts.phases),
             repetitions=self._repetitions.first if final else [],
         )
         return Output(METRICS, captured_ns, payload)
+
+    def _metrics(self, *, final: bool) -> list[Metric]:
+        """Every row that the session has, before anybody has judged it."""
+        attempts = self._attempts
+        return [
+            *self._repetitions.metrics(),
+            *([] if attempts is None else attempts.metrics(final=final)),
+            *([] if self._is_exercise else self._totals.metrics(self._parameters)),
+            *(rhythm_metrics(self._learned if final else None, self._known, final=final) if self._walks else []),
+        ]
 
     def rejections(self) -> list[Rejection]:
         """None: strides that do not count are metrics of their own."""
@@ -131,6 +146,7 @@ class MetricsNode:
             "attempts": None if self._attempts is None else self._attempts.snapshot(),
             "tested_ns": self._tested_ns,
             "learned": None if self._learned is None else self._learned.model_dump(mode="json"),
+            "quality": None if self._quality is None else self._quality.model_dump(mode="json"),
         }
 
     def restore(self, state: State) -> None:
@@ -142,7 +158,8 @@ class MetricsNode:
         self._repeated_ns, self._tested_ns = state["repeated_ns"], state["tested_ns"]
         if self._attempts is not None:
             self._attempts.restore(state["attempts"])
-        learned = state["learned"]
+        learned, quality = state["learned"], state["quality"]
+        self._quality = None if quality is None else DataQuality.model_validate(quality)
         self._learned = None if learned is None else LearnedRhythm.model_validate(learned)
 
 
@@ -159,6 +176,13 @@ def _so_far(captured_ns: int, metrics: list[Metric], phases: list[TaskPhase]) ->
         phases=phases,
         repetitions=[],
     )
+
+
+def _totals(description: SessionDescription, parameters: MetricsParameters) -> SessionTotals:
+    paretic_side = description.conditions.paretic_side
+    if description.task is Task.MARCHING:
+        return MarchingTotals(paretic_side)
+    return SessionTotals(paretic_side, SharedErrors(description, parameters.shared))
 
 
 def _repetitions(description: SessionDescription, parameters: MetricsParameters) -> RepetitionTotals | ExerciseTotals:

@@ -20,6 +20,7 @@ from services.segmentation.pairing import Pairing, Together
 from services.segmentation.parameters import SegmentationParameters
 from services.segmentation.repetitions.segmenter import RepetitionSegmenter
 from services.segmentation.timed_up_and_go.segmenter import TimedUpAndGoSegmenter
+from services.segmentation.walking_tests.segmenter import WALKING_TESTS, WalkingTestSegmenter
 
 DEFAULTS = SegmentationParameters()
 
@@ -50,6 +51,8 @@ def segmenters(description: SessionDescription, parameters: SegmentationParamete
         return {"repetitions": RepetitionSegmenter()}
     if description.task in FOLLOWED:
         return {"exercises": ExerciseSegmenter(description.task)}
+    if description.task in WALKING_TESTS:
+        return {"walking_test": WalkingTestSegmenter(description, parameters)}
     found: dict[str, Segmenter] = {"gait": GaitSegmenter(description, parameters)}
     if description.task is Task.TIMED_UP_AND_GO:
         found["timed_up_and_go"] = TimedUpAndGoSegmenter(description)

@@ -146,6 +146,7 @@ class Attempts:
             steps=None if end_ns is None else self.steps.of_both(state.start_ns, end_ns),
             distance_m=None,
             distance_std_m=None,
+            speed_change=None,
             **known,
         )
 

@@ -11,7 +11,7 @@ from services.definitions.table import BY_NAME, DEFINITIONS
 from services.definitions.variability import VARIABILITY_OF
 
 README = (Path(services.definitions.__file__).parent / "README.md").read_text()
-UNITS = {"s", "m", "m/s", "rad", "1", "steps/min", "rad/s", "rad/repetition", "repetitions/min"}
+UNITS = {"s", "m", "m/s", "rad", "1", "steps/min", "rad/s", "rad/repetition", "repetitions/min", "m/s/min"}
 
 
 @pytest.mark.parametrize("definition", DEFINITIONS, ids=lambda definition: definition.name)
