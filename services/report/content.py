@@ -35,6 +35,7 @@ class QualityLine(Shown):
     grade: TrustGrade | None = Field(description="null where nothing is known of the data", examples=["good"])
     head: str = Field(examples=["Data quality"])
     word: str = Field(description="the grade as a word, so that no colour carries it alone", examples=["Good"])
+    title: str = Field(description="head and word as the language joins them", examples=["Data quality: Good"])
     text: str = Field(examples=["0.4 % of the samples lost; 38 of 42 strides used"])
     warnings: list[str] = Field(examples=[["The left thigh sensor was silent for 2.1 s."]])
 

@@ -8,8 +8,7 @@ from services.progress.progress import Progress as Told
 from services.progress.rules import Verdict
 from services.progress.series import Series
 from services.progress.visits import Trial, Visit, numbers_of_sessions
-from services.report.curve_distances import curve_distances
-from services.report.source import JointChange, MeasureProgress, Progress, Treatment, VisitValue
+from services.report.source import CurveDistance, JointChange, MeasureProgress, Progress, Treatment, VisitValue
 
 
 def progress_of(session: str, visits: Sequence[Visit], told: Told, treatments: Sequence[Treatment]) -> Progress | None:
@@ -30,12 +29,11 @@ def progress_of(session: str, visits: Sequence[Visit], told: Told, treatments: S
     last = next(visit.day for visit in visits if visit.number == number)
     return Progress(
         visit=number,
-        visits=number,
         baseline_visit=baseline,
         baseline_day=day,
         measures=tuple(_measure(each, session, number) for each in mine),
         treatments=tuple(each for each in treatments if each.on <= last),
-        distances=curve_distances([visit for visit in visits if visit.number <= number], trial, baseline),
+        distances=_distances(told, trial, number),
         joints=_joints(told, trial, number),
     )
 
@@ -71,7 +69,8 @@ def _measure(series: Series, session: str, number: int) -> MeasureProgress:
         visits=tuple(values),
         baseline=None if series.baseline is None or series.baseline.visit > number else series.baseline.value,
         mdc=None if series.mdc is None else series.mdc.value,
-        mdc_source=None if series.mdc is None else f"{series.mdc.people} ({series.mdc.source})",
+        mdc_people=None if series.mdc is None else series.mdc.people,
+        mdc_source=None if series.mdc is None else series.mdc.source,
         why_no_mdc=now if series.mdc is None else (),
     )
 
@@ -80,6 +79,14 @@ def _not_comparable(point: Point) -> VisitValue:
     assert point.value is not None
     rules = tuple(point.rules)
     return VisitValue(point.visit, point.day, point.value, point.low, point.high, None, Verdict.CANNOT_TELL, rules)
+
+
+def _distances(told: Told, trial: Trial, number: int) -> tuple[CurveDistance, ...]:
+    return tuple(
+        CurveDistance(each.visit, each.side, each.from_baseline.distance, each.from_baseline.by_variable)
+        for each in told.curves
+        if (each.task, each.instruction) == _test(trial) and each.visit <= number and each.from_baseline is not None
+    )
 
 
 def _joints(told: Told, trial: Trial, number: int) -> tuple[JointChange, ...]:

@@ -22,7 +22,7 @@ def page(report: Report) -> str:
         f"<style>{_style()}</style></head><body>",
         f'<header><div class="title"><h1>{escape(head.title)}</h1><p>{escape(head.subtitle)}</p></div>',
         f"<dl>{facts}</dl>",
-        f'<div class="quality"><p><strong class="{grade}">{escape(quality.head)}: {escape(quality.word)}.</strong> ',
+        f'<div class="quality"><p><strong class="{grade}">{escape(quality.title)}.</strong> ',
         f"{escape(quality.text)}.</p>{warnings}</div></header>",
         "<main>",
         *(_section(each) for each in report.sections),

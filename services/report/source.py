@@ -96,6 +96,8 @@ class MeasureProgress:
     visits: tuple[VisitValue, ...]
     baseline: float | None
     mdc: float | None
+    mdc_people: str | None
+    """On whom it was measured, in the words of services.progress.thresholds."""
     mdc_source: str | None
     why_no_mdc: tuple[Rule, ...]
 
@@ -110,10 +112,10 @@ class Treatment:
 
 @dataclass(frozen=True, slots=True)
 class CurveDistance:
-    """RMS distance of a visit's sagittal curves from the baseline's, rad; of all four only where all are there."""
+    """RMS distance of a leg's sagittal curves from the baseline's, rad; of all four only where all are there."""
 
     visit: int
-    day: date
+    side: Side
     distance: float | None
     by_variable: Mapping[str, float]
 
@@ -123,7 +125,6 @@ class Progress:
     """How the patient's visits stand to the baseline. `visit` counts from 1."""
 
     visit: int
-    visits: int
     baseline_visit: int | None
     baseline_day: date | None
     measures: tuple[MeasureProgress, ...]

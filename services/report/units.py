@@ -24,6 +24,7 @@ _BY_UNIT: dict[str, Shown] = {
     "rad/repetition": Shown(180 / math.pi, "degree_per_repetition", 2),
     "m": Shown(1, "m", 2),
     "m/s": Shown(1, "m_per_s", 2),
+    "m/s/min": Shown(1, "m_per_s_per_min", 3),
     "s": Shown(1, "s", 2),
     "steps/min": Shown(1, "steps_per_min", 0),
     "repetitions/min": Shown(1, "repetitions_per_min", 1),
@@ -34,7 +35,7 @@ def shown(unit: str, name: str) -> Shown:
     """How the metric `name`, whose wire unit is `unit`, is shown."""
     if unit == "m" and name.startswith(LENGTHS_IN_CM):
         return Shown(100, "cm", 1)
-    if unit == "m" and name.endswith("_distance"):
+    if unit == "m" and "_walk_distance" in name:
         return Shown(1, "m", 0)
     if unit == "1" and "_ratio" not in name and name.endswith(PER_CENT_SUFFIXES):
         return Shown(100, "percent", 1)

@@ -8,8 +8,8 @@ from services.report.charts.axes import Plot, digits_of, draw_axes, ticks
 from services.report.charts.canvas import SIDE_DASHES, TEXT_SIZE, Box, Canvas, Point
 from services.report.charts.colours import CHANGE_BAND, INK, LINE, REFERENCE, SIDE, SOFT_INK, WHITE, WHOLE
 
-WIDTH, HEIGHT = 168.0, 112.0
-LEFT, TOP, RIGHT, BOTTOM = 24.0, 12.0, 14.0, 14.0
+WIDTH, HEIGHT = 136.0, 106.0
+LEFT, TOP, RIGHT, BOTTOM = 24.0, 20.0, 12.0, 14.0
 MARK = 3.2
 """Half the size of a mark."""
 

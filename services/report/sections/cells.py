@@ -45,7 +45,7 @@ def by_side(words: Catalogue, texts: dict[Side | None, str]) -> str:
         return texts[None]
     if len(texts) > 1 and len(set(texts.values())) == 1:
         return next(iter(texts.values()))
-    return ", ".join(f"{words.text(f'side.{side}_letter')} {text}" for side, text in texts.items())
+    return " · ".join(f"{words.text(f'side.{side}_letter')} {text}" for side, text in texts.items())
 
 
 def reference_cell(words: Catalogue, measured: Measured, reference: ReferenceRange | None) -> Cell:

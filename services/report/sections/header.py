@@ -71,7 +71,7 @@ def _facts(source: ReportSource, words: Catalogue) -> list[Fact]:
     born = unsaid if patient is None or patient.year_of_birth is None else str(patient.year_of_birth)
     visit = words.text("header.unassigned")
     if progress is not None:
-        visit = words.text("header.visit_of", number=progress.visit, count=progress.visits)
+        visit = str(progress.visit)
     aid, orthosis, footwear, speed = (
         unsaid if value is None else words.text(f"{kind}.{value}")
         for kind, value in (
@@ -98,7 +98,7 @@ def _sensors(description: SessionDescription, words: Catalogue) -> str:
         parts.append(words.text("sensors.inertial", segments=", ".join(names)))
     if description.cameras:
         parts.append(words.text("sensors.camera"))
-    return "; ".join(parts) or words.text("header.not_said")
+    return words.text("format.semicolon").join(parts) or words.text("header.not_said")
 
 
 def quality_line(source: ReportSource, words: Catalogue) -> QualityLine:
@@ -117,10 +117,10 @@ def quality_line(source: ReportSource, words: Catalogue) -> QualityLine:
         parts.append(words.text("quality.unknown"))
     parts.append(_cycles(source, words))
     grade = worst_grade(source)
-    text = "; ".join(part for part in parts if part)
-    return QualityLine(
-        grade=grade, head=words.text("quality.head"), word=grade_word(words, grade), text=text, warnings=warnings
-    )
+    text = words.text("format.semicolon").join(part for part in parts if part)
+    head, word = words.text("quality.head"), grade_word(words, grade)
+    title = words.text("format.colon", label=head, text=word)
+    return QualityLine(grade=grade, head=head, word=word, title=title, text=text, warnings=warnings)
 
 
 def worst_grade(source: ReportSource) -> TrustGrade | None:

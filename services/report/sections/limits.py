@@ -48,7 +48,7 @@ def _not_measured(source: ReportSource, words: Catalogue, *, exercise: bool) -> 
         legs = {Segment(f"{part}_{side}") for part in ("thigh", "shank", "foot")}
         if worn and not source.description.cameras and not legs & worn:
             texts.append(words.text("limits.one_side", side=words.text(f"side.of_{side}")))
-    return [words.text("limits.not_measured", items="; ".join(texts))] if texts else []
+    return [words.text("limits.not_measured", items=words.text("format.semicolon").join(texts))] if texts else []
 
 
 def _withheld(source: ReportSource, words: Catalogue) -> list[str]:
@@ -89,7 +89,7 @@ def _why(source: ReportSource, words: Catalogue) -> str:
     if not reasons:
         return ""
     parts = [f"{_reason(words, reason)} ({count})" for reason, count in sorted(reasons.items())]
-    return " " + words.text("limits.because", reasons="; ".join(parts))
+    return " " + words.text("limits.because", reasons=words.text("format.semicolon").join(parts))
 
 
 def _reason(words: Catalogue, reason: str) -> str:
@@ -105,5 +105,5 @@ def _repetitions_left_out(source: ReportSource, words: Catalogue) -> str:
     for each in rejected:
         text = _reason(words, each.rejected_because or "")
         reasons[text] = reasons.get(text, 0) + 1
-    items = "; ".join(f"{text} ({count})" for text, count in sorted(reasons.items()))
+    items = words.text("format.semicolon").join(f"{text} ({count})" for text, count in sorted(reasons.items()))
     return words.text("limits.repetitions", items=items)

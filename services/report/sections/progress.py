@@ -76,7 +76,7 @@ def _chart(source: ReportSource, told: Progress, words: Catalogue, name: str) ->
     labels = ProgressLabels(
         title=title,
         description=alt,
-        y_axis=f"{title}, {measured.symbol}" if measured.symbol else title,
+        y_axis=measured.symbol,
         x_axis=words.text("header.visit").lower(),
         letters={side: words.text(f"side.{side}_letter") for side in Side},
         decimal_mark=words.text("format.decimal_mark"),

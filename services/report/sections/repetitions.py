@@ -4,7 +4,7 @@ import math
 
 from schemas.vocabulary import Side
 from services.report.catalogue import Catalogue
-from services.report.charts.repetition_chart import RepetitionBar, RepetitionLabels, repetition_chart
+from services.report.charts.bar_chart import Bar, BarLabels, bar_chart
 from services.report.content import Chart, Section, SectionId
 from services.report.phrases import joint_name
 from services.report.sections.measure_table import measure_table
@@ -29,18 +29,18 @@ def repetitions(source: ReportSource, words: Catalogue) -> Section | None:
 
 
 def _charts(source: ReportSource, words: Catalogue) -> list[Chart]:
-    followed: dict[str, list[RepetitionBar]] = {}
+    followed: dict[str, list[Bar]] = {}
     for each in source.metrics.repetitions[-MOST_BARS:]:
         extent = abs(each.turn_angle - (each.start_angle + each.end_angle) / 2) * DEGREES
-        followed.setdefault(each.degree_of_freedom, []).append(RepetitionBar(each.side, extent, each.valid))
+        followed.setdefault(each.degree_of_freedom, []).append(Bar(each.side, extent, each.valid))
     return [_chart(words, name, bars, len(followed)) for name, bars in followed.items()]
 
 
-def _chart(words: Catalogue, followed: str, bars: list[RepetitionBar], count: int) -> Chart:
+def _chart(words: Catalogue, followed: str, bars: list[Bar], count: int) -> Chart:
     title = joint_name(words, followed)
     sides: dict[Side | None, list[float]] = {}
     for bar in bars:
-        sides.setdefault(bar.side, []).append(bar.extent_deg)
+        sides.setdefault(bar.side, []).append(bar.value)
     parts = " ".join(
         words.text(
             "chart.repetitions_alt_side",
@@ -52,11 +52,11 @@ def _chart(words: Catalogue, followed: str, bars: list[RepetitionBar], count: in
         for side, values in sides.items()
     )
     alt = words.text("chart.repetitions_alt", sides=parts)
-    labels = RepetitionLabels(
+    labels = BarLabels(
         title, alt, words.text("chart.repetition_axis"), words.text("chart.range_axis"),
         words.text("format.decimal_mark"),
     )  # fmt: skip
     identity = f"repetitions-{followed.replace('_', '-')}"
     return Chart(
-        id=identity, title=title, svg=repetition_chart(identity, bars, labels), alt=alt, columns=12 if count == 1 else 6
+        id=identity, title=title, svg=bar_chart(identity, bars, labels), alt=alt, columns=12 if count == 1 else 6
     )

@@ -40,12 +40,14 @@ def _changes(source: ReportSource, words: Catalogue, names: Sequence[str]) -> st
         if history.metric not in names:
             continue
         name, measured = words.metric(history.metric), Measured(words, history.unit, history.metric)
-        if history.mdc is not None and history.mdc_source is not None:
-            text = words.text("format.colon", label=name, text=f"{measured.full(history.mdc)}, {history.mdc_source}")
+        if history.mdc is not None and history.mdc_people is not None:
+            known = words.messages.get(f"people.{history.mdc_people}", history.mdc_people)
+            whose = words.text("format.brackets", text=known, inside=history.mdc_source)
+            text = words.text("format.colon", label=name, text=f"{measured.full(history.mdc)}, {whose}")
             if text not in rules:
                 rules.append(text)
     if rules:
-        return words.text("note.mdc", rules="; ".join(rules) + ".")
+        return words.text("note.mdc", rules=words.text("format.semicolon").join(rules) + ".")
     why = next((h for h in progress.measures if h.metric in names and h.why_no_mdc), None)
     if why is None:
         return words.text("note.no_mdc", reason="").strip()

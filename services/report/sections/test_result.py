@@ -2,6 +2,7 @@
 
 from schemas.vocabulary import Task
 from services.report.catalogue import Catalogue
+from services.report.charts.bar_chart import Bar, BarLabels, bar_chart
 from services.report.charts.phase_chart import PhasePart, phase_chart
 from services.report.content import Chart, Section, SectionId
 from services.report.sections.measure_table import measure_table
@@ -16,6 +17,8 @@ PREFIXES: dict[Task, str] = {
     Task.MARCHING: "marching_",
 }
 """What the names of a test's own metrics begin with."""
+MINUTES = ("first", "second", "third", "fourth", "fifth", "sixth")
+"""Minutes of a six-minute walk, whose speeds are drawn instead of listed."""
 MOST_ROWS = 3
 """Attempts drawn at most."""
 
@@ -25,18 +28,40 @@ def test_result(source: ReportSource, words: Catalogue) -> Section | None:
     prefix = PREFIXES.get(source.description.task)
     if prefix is None:
         return None
-    names = [each.name for each in source.metrics.metrics if each.name.startswith(prefix)]
-    names = list(dict.fromkeys(names))
+    drawn = [_minute_speed(minute) for minute in MINUTES]
+    found = [each.name for each in source.metrics.metrics if each.name.startswith(prefix) and each.name not in drawn]
+    names = list(dict.fromkeys(found))
     title = words.text("title.test_section")
     table = measure_table(source, words, names, title)
-    charts = _phases(source, words)
+    phases = _phases(source, words)
+    charts = [*_minutes(source, words), *phases]
     if table is None and not charts:
         return None
-    notes = table_notes(source, words, names) + ([words.text("note.phase_order")] if charts else [])
+    notes = table_notes(source, words, names) + ([words.text("note.phase_order")] if phases else [])
     return Section(id=SectionId.TEST, page=1, title=title, sentences=[], charts=charts, table=table, notes=notes)
 
 
+def _minute_speed(minute: str) -> str:
+    return f"six_minute_walk_speed_{minute}_minute"
+
+
+def _minutes(source: ReportSource, words: Catalogue) -> list[Chart]:
+    """Speed minute by minute; nothing where it was not told."""
+    values = [source.value(_minute_speed(minute)) for minute in MINUTES]
+    told = [value for value in values if value is not None]
+    if not told:
+        return []
+    title = words.text("title.minutes")
+    speed = Measured(words, "m/s", "walking_speed")
+    parts = ", ".join(f"{number}: {speed.full(value)}" for number, value in enumerate(told, start=1))
+    alt = words.text("chart.minutes_alt", parts=parts)
+    labels = BarLabels(title, alt, words.text("chart.minute_axis"), speed.symbol, words.text("format.decimal_mark"))
+    svg = bar_chart("minutes", [Bar(None, value, True) for value in told], labels)
+    return [Chart(id="minutes", title=title, svg=svg, alt=alt, columns=6)]
+
+
 def _phases(source: ReportSource, words: Catalogue) -> list[Chart]:
+    """One line for each attempt."""
     attempts: dict[int, list[PhasePart]] = {}
     seconds = Measured(words, "s", "time")
     for phase in source.metrics.phases:

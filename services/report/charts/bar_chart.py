@@ -1,4 +1,4 @@
-"""The range of each repetition as a bar, in order; what does not count is an empty bar."""
+"""Values in order as bars: ranges of repetitions, speeds of minutes. What does not count is an empty bar."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -9,23 +9,23 @@ from services.report.charts.canvas import Box, Canvas
 from services.report.charts.colours import SIDE, SOFT_INK, WHITE, WHOLE
 
 WIDTH, HEIGHT = 340.0, 120.0
-LEFT, TOP, RIGHT, BOTTOM = 26.0, 13.0, 6.0, 24.0
+LEFT, TOP, RIGHT, BOTTOM = 26.0, 18.0, 6.0, 24.0
 MOST_LABELS = 12
 WIDEST_SHARE = 0.7
-"""Share of a repetition's room that its bar takes."""
+"""Share of its room that a bar takes."""
 
 
 @dataclass(frozen=True, slots=True)
-class RepetitionBar:
-    """One repetition: whose, its range in degrees, and whether it counts."""
+class Bar:
+    """One value in what is shown: whose it is, and whether it counts."""
 
     side: Side | None
-    extent_deg: float
+    value: float
     counts: bool
 
 
 @dataclass(frozen=True, slots=True)
-class RepetitionLabels:
+class BarLabels:
     """Words of the chart in the report's language."""
 
     title: str
@@ -35,10 +35,10 @@ class RepetitionLabels:
     decimal_mark: str
 
 
-def repetition_chart(name: str, bars: Sequence[RepetitionBar], labels: RepetitionLabels) -> str:
+def bar_chart(name: str, bars: Sequence[Bar], labels: BarLabels) -> str:
     """The chart as SVG. `name` is its id on the page."""
     canvas = Canvas(WIDTH, HEIGHT)
-    y_ticks = ticks(0.0, max(bar.extent_deg for bar in bars), 4)
+    y_ticks = ticks(0.0, max(bar.value for bar in bars), 4)
     room = max(len(bars), 6)
     plot = Plot(Box(LEFT, TOP, WIDTH - RIGHT, HEIGHT - BOTTOM), (0.4, room + 0.6), (0.0, y_ticks[-1]))
     digits = digits_of(y_ticks[1])
@@ -49,7 +49,7 @@ def repetition_chart(name: str, bars: Sequence[RepetitionBar], labels: Repetitio
     for number, bar in enumerate(bars, start=1):
         colour = WHOLE if bar.side is None else SIDE[bar.side]
         left, right = plot.across(number - WIDEST_SHARE / 2), plot.across(number + WIDEST_SHARE / 2)
-        box = Box(left, plot.up(bar.extent_deg), right, plot.box.bottom)
+        box = Box(left, plot.up(bar.value), right, plot.box.bottom)
         canvas.rectangle(box, colour if bar.counts else WHITE, colour)
     canvas.text((0, 7.5), labels.y_axis, colour=SOFT_INK)
     canvas.text((WIDTH - RIGHT, HEIGHT - 3), labels.x_axis, anchor="end", colour=SOFT_INK)
