@@ -31,8 +31,9 @@ class MetricsNode:
 
     When only one foot is seen, they come after every second stride of that foot. Learned rhythms are compared, and the
     quality of the data is heeded, in the final ones only: until all streams have ended, it depends on chance which of
-    them has come further. For the same reason a session with an exercise tells of the exercise alone, after each repetition, until it ends, and one with a
-    timed test of that test, after each phase. A task of the whole body has no metrics of a walk at all.
+    them has come further. For the same reason a session with an exercise tells of the exercise alone, after each
+    repetition, until it ends, and one with a timed test of that test, after each phase. A task of the whole body has
+    no metrics of a walk at all.
     """
 
     outputs: tuple[Signal, ...] = (METRICS,)

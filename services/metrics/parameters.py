@@ -1,6 +1,62 @@
 """Everything that can be tuned in the metrics: unit, default, where the default comes from."""
 
-from dataclasses import dataclass
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+
+from schemas.metrics import DoubtKind
+from services.definitions.definition import Basis
+
+
+@dataclass(frozen=True, slots=True)
+class SharedErrorParameters:
+    """Standard deviations of what all strides of a session have alike.
+
+    Where no other source stands, chosen on 32 synthetic patients (seeds 2001 to 2032, bodies measured to 3 %, soft
+    tissue) so that their truth lies within the intervals; `ambula bench metrics coverage` scores others.
+    """
+
+    relative_length: Mapping[str, float] = field(
+        default_factory=lambda: {"measured": 0.03, "regression": 0.05, "default": 0.08}
+    )
+    """of segment lengths, by where they come from: a tape between palpated landmarks; from stature; of nobody
+    (proposal)."""
+    filter_share: float = 0.25
+    """of the filter's own deviation that is the same in every stride."""
+    contact_bias_s: float = 0.02
+    """s by which initial contacts are early or late."""
+    toe_off_bias_s: float = 0.03
+    """s by which toe-offs are."""
+    foot_difference_s: float = 0.015
+    """s by which one foot's contacts are later than the other's."""
+    relative_stride_time: float = 0.002
+    """of times from contact to contact: a clock, and a walk of seconds for how somebody walks."""
+    event_jitter_s: float = 0.02
+    """s of scatter that events have from stride to stride because they are measured."""
+    length_jitter: float = 0.02
+    """m, or m/s, of scatter that steps have because they are measured."""
+    circumduction_m: float = 0.012
+    """m."""
+    width_m: float = 0.02
+    """m of a camera's step width."""
+    angles: Mapping[Basis, tuple[float, float]] = field(
+        default_factory=lambda: {
+            Basis.KNEE: (0.04, 0.05),
+            Basis.HIP: (0.05, 0.03),
+            Basis.PELVIS: (0.005, 0.006),
+            Basis.ANKLE: (0.09, 0.05),
+        }
+    )
+    """rad, of angles at an instant or over the stride, and of ranges."""
+    ratios: Mapping[Basis, float] = field(
+        default_factory=lambda: {
+            Basis.LENGTHS: 0.06,
+            Basis.CONTACTS: 0.03,
+            Basis.TOE_OFFS: 0.04,
+            Basis.KNEE: 0.03,
+            Basis.HIP: 0.04,
+        }
+    )
+    """relative, of the ratio of both sides."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -24,3 +80,54 @@ class MetricsParameters:
     """repetitions told one by one; what a message takes."""
     most_phases: int = 500
     """phases of a timed test told one by one; what a message takes."""
+    shared: SharedErrorParameters = field(default_factory=SharedErrorParameters)
+    """errors that all strides have alike."""
+
+
+@dataclass(frozen=True, slots=True)
+class Rule:
+    """A number of the data against limits: beyond `fair` a metric is no better than fair, and so on. None: never."""
+
+    fair: float | None
+    poor: float | None
+    withheld: float | None
+    source: str
+    below: bool = False
+    """Whether too little is what speaks against the metric, instead of too much."""
+
+
+RULES: Mapping[DoubtKind, Rule] = {
+    DoubtKind.FEW_CYCLES: Rule(6, None, 3, "6 cycles of each foot: PMC7558375; 3: proposal", below=True),
+    DoubtKind.REJECTED_CYCLES: Rule(0.2, 0.5, 0.8, "proposal: share of the strides"),
+    DoubtKind.COVERAGE: Rule(0.9, 0.7, 0.3, "proposal: share of the time", below=True),
+    DoubtKind.LOSS: Rule(0.02, 0.1, 0.5, "good systems lose 0.9 % of a recording, a tenth of them over 12.8 %: faults"),
+    DoubtKind.SILENCE: Rule(1.0, 5.0, None, "proposal: s; strides with a silent sensor are rejected one by one"),
+    DoubtKind.LATE: Rule(0.01, 0.05, None, "proposal: share of the samples"),
+    DoubtKind.MISPLACED: Rule(0, 0, 0, "proposal: an angle of a sensor worn otherwise is none"),
+    DoubtKind.NOT_CALIBRATED: Rule(0, 0, None, "zero uncertain by 5 to 10 deg: estimation, walking alone"),
+    DoubtKind.NOT_ABSOLUTE: Rule(0, 0, None, "McGrath 2018: 3.5 deg about the mean, 9.7 deg absolute"),
+    DoubtKind.NOT_LOCKED: Rule(0.6, 0.2, None, "proposal: share of the time of moving", below=True),
+    DoubtKind.WARM_UP: Rule(15.0, None, None, "Joukov: 15 s in the experiments; s of moving", below=True),
+    DoubtKind.WIDE_INTERVAL: Rule(1.0, 2.0, None, "proposal: half the interval over the smallest useful change"),
+    DoubtKind.WEAK_MEASURE: Rule(0, 0, None, "double support: ICC 0.21 to 0.73, PMC8072263"),
+    DoubtKind.IMPLAUSIBLE: Rule(0, 0, None, "limits of mobgap 1.2.0, healthy free living"),
+}
+"""One row per reason. Where a limit is 0, having the reason at all is enough."""
+
+USEFUL_CHANGE: Mapping[str, tuple[float, str]] = {
+    "walking_speed": (0.05, "Perera: small change; Hosoi 2023: MDC below 0.4 m/s"),
+    "step_length": (0.067, "Kesar 2011, paretic step length"),
+    "stance_fraction": (0.042, "Kesar 2011, temporal variables"),
+    "swing_fraction": (0.042, "Kesar 2011, temporal variables"),
+    "knee_flexion_range": (0.105, "6 deg: proposal from Kesar 2011"),
+    "knee_flexion_peak_swing": (0.105, "6 deg: proposal from Kesar 2011"),
+    "hip_flexion_range": (0.105, "6 deg: proposal from Kesar 2011"),
+    "hip_extension_peak": (0.105, "6 deg: proposal from Kesar 2011"),
+}
+"""Smallest change that somebody would want to see, in the metric's unit, with its source."""
+
+PLAUSIBLE: Mapping[str, tuple[float, float]] = {"walking_speed": (0.10, 1.97), "cadence": (36.0, 157.0)}
+"""Smallest and largest value that is believed, in the metric's unit; no norm (mobgap 1.2.0, healthy free living)."""
+
+WEAK = ("initial_double_support", "terminal_double_support", "double_support")
+"""Beginnings of the names of measures that are weak even with both feet instrumented."""
