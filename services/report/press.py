@@ -3,8 +3,10 @@
 import importlib.util
 import json
 import os
+import shutil
 import tempfile
 import threading
+import weakref
 from datetime import UTC, date, datetime, time
 from functools import cache
 from importlib.resources import files
@@ -35,8 +37,8 @@ class Press:
     def __init__(self) -> None:
         self._lock = threading.Lock()
         # The package has each face twice, as TTF and OTF; which one a folder gives first is up to the file system.
-        self._folder = tempfile.TemporaryDirectory(prefix="ambula-report-")
-        folder = Path(self._folder.name)
+        folder = Path(tempfile.mkdtemp(prefix="ambula-report-"))
+        weakref.finalize(self, shutil.rmtree, folder, ignore_errors=True)
         _link_faces(folder)
         fonts = typst.Fonts(include_system_fonts=False, include_embedded_fonts=False, font_paths=[folder])
         page = folder / "page.typ"

@@ -23,9 +23,12 @@ TEXT_COLOURS: dict[str, str] = {
 }  # fmt: skip
 """Everything text is written in."""
 HEAD_GROUND = "#F1F4F6"
-"""Ground of table heads and of the quality line."""
-TEXT_GROUNDS: dict[str, str] = {"paper": WHITE, "head": HEAD_GROUND, "change band": CHANGE_BAND}
-"""Everything text stands on."""
+"""Ground of the quality line."""
+TEXT_ON: dict[str, tuple[str, ...]] = {
+    WHITE: tuple(TEXT_COLOURS),
+    HEAD_GROUND: ("ink", "soft ink", "good", "fair", "poor"),
+}
+"""What is written on which ground. The sides' own colours stand on white only: on any grey they would be too faint."""
 
 
 def relative_luminance(colour: str) -> float:
