@@ -2,8 +2,9 @@ import json
 
 import pytest
 
-from schemas.metrics import SessionMetrics
-from schemas.signals import METRICS, STRIDE
+from schemas.metrics import SessionMetrics, TrustGrade
+from schemas.quality import DataQuality, SourceQuality
+from schemas.signals import DATA_QUALITY, METRICS, STRIDE
 from schemas.vocabulary import Side
 from services.flow.message import Envelope, Message, Stream
 from services.metrics.node import build
@@ -86,3 +87,46 @@ def test_the_state_does_not_grow(messages, description):
         sizes.append(len(json.dumps(node.snapshot())))
     assert max(sizes) - min(sizes) < 200
     assert node.rejections() == []
+
+
+def told_quality(description, used: int) -> Message:
+    """Half a minute, of which every sensor's samples were used in part."""
+    sources = [
+        SourceQuality(name=sensor.name, expected=3000, used=used, rejected=0, longest_silence_s=0.1, misplaced=False)
+        for hub in description.hubs
+        for sensor in hub.sensors
+    ]
+    payload = DataQuality(
+        captured_ns=30_000_000_000, sources=sources, calibrated=True, absolute=True, spanned_s=30.0, estimated_s=30.0,
+        moving_s=25.0, locked_s=24.0, late=0,
+    )  # fmt: skip
+    return Message(Stream(DATA_QUALITY, "estimation"), Envelope(0, 0, payload.captured_ns), payload)
+
+
+def test_the_quality_of_the_data_counts_at_the_end_whenever_it_came(messages, description):
+    poor = told_quality(description, used=2600)
+    early, late = run(build(description), [poor, *messages]), run(build(description), [*messages, poor])
+    assert early == late
+    assert early[:-1] == run(build(description), messages)[:-1]
+    final = SessionMetrics.model_validate_json(early[-1][1])
+    assert final.quality == poor.payload
+    by_name = {(metric.name, metric.side): metric for metric in final.metrics}
+    assert by_name["stance_time", "left"].grade is TrustGrade.POOR
+    assert by_name["strides_counted", "left"].grade is TrustGrade.GOOD
+
+
+def test_split_and_resume_keeps_the_quality(messages, description):
+    poor = told_quality(description, used=2600)
+    first, second = build(description), build(description)
+    first.step(poor)
+    second.restore(json.loads(json.dumps(first.snapshot(), allow_nan=False)))
+    assert run(second, messages) == run(first, messages)
+
+
+def test_legs_are_compared_while_the_session_runs_and_at_its_end(messages, description):
+    found = [SessionMetrics.model_validate_json(text) for _, text in run(build(description), messages)]
+    assert found[0].sides == []
+    assert {side.joint for side in found[-1].sides} == {
+        "hip_flexion", "hip_adduction", "hip_internal_rotation", "knee_flexion"
+    }  # fmt: skip
+    assert all(side.rmse == 0.0 for side in found[-1].sides)

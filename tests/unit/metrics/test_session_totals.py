@@ -3,12 +3,14 @@ import math
 import numpy as np
 import pytest
 
+from schemas.gait import StrideCurve
 from schemas.vocabulary import Side
 from services.definitions.rhythm import RHYTHMS
 from services.definitions.symmetry import PARETIC_RATIOS
 from services.definitions.table import WALK
 from services.metrics.parameters import MetricsParameters
 from services.metrics.session_totals import SessionTotals, sides_of
+from services.metrics.shared_errors import SharedErrors
 
 PARAMETERS = MetricsParameters()
 ALL_COUNT = MetricsParameters(least_steady_strides=1000)
@@ -220,3 +222,59 @@ def test_reporting_changes_nothing(totals):
     assert built.metrics(PARAMETERS) == built.metrics(PARAMETERS)
     built.curves(PARAMETERS)
     assert built.snapshot() == before
+
+
+def test_curves_of_the_whole_body(stride):
+    """What only that model has: the trunk's, over the right foot's strides, and an arm's, over its own side's."""
+    totals = SessionTotals()
+    line = StrideCurve(position=np.linspace(0.0, 0.2, 101).tolist(), position_std=0.05)
+    for index in range(5):
+        for side in Side:
+            totals.add(stride(side, index, curves={"trunk_flexion": line, "shoulder_flexion_left": line}))
+    curves = {curve.degree_of_freedom: curve for curve in totals.curves(ALL_COUNT)}
+    assert set(curves) == {"trunk_flexion", "shoulder_flexion_left"}
+    assert curves["trunk_flexion"].mean == pytest.approx(line.position, abs=1e-6)
+
+
+def test_ratios_are_of_the_paretic_side_where_one_is_declared(stride):
+    for paretic, expected in ((Side.LEFT, 0.5), (Side.RIGHT, 2.0)):
+        totals = SessionTotals(paretic)
+        for index in range(4):
+            totals.add(stride(Side.LEFT, index, step_length_m=0.3))
+            totals.add(stride(Side.RIGHT, index, step_length_m=0.6))
+        found = table(totals)
+        assert found["step_length_ratio_paretic_to_non_paretic", None].value == pytest.approx(expected)
+        assert ("step_length_ratio_larger_to_smaller", None) not in found
+        assert [side.reference_side for side in totals.sides(PARAMETERS)] == [paretic.other] * 4
+        # (0.6 - 0.3) / 0.45, ln of the ratio, (45 deg - arctan 0.5) / 90 deg.
+        assert found["step_length_symmetry_index", None].value == pytest.approx(2 / 3)
+        assert found["step_length_gait_asymmetry", None].value == pytest.approx(math.log(expected))
+        assert found["step_length_symmetry_angle", None].value == pytest.approx(0.2048, abs=1e-4)
+
+
+def test_supports_from_both_feet(stride):
+    """The other foot lifts 0.1 s after this one's contact and comes down at 0.5 s; this one lifts at 0.6 s."""
+    totals = SessionTotals()
+    for index in range(4):
+        for side in Side:
+            start = stride(side, index).start_ns
+            totals.add(stride(side, index, opposite_toe_off_ns=start + 100_000_000))
+    found = table(totals)
+    for side in ("left", "right"):
+        assert found["initial_double_support_fraction", side].value == pytest.approx(0.1)
+        assert found["terminal_double_support_time", side].value == pytest.approx(0.1)
+        assert found["single_support_fraction", side].value == pytest.approx(0.4)
+    assert found["double_support_time", None].value == pytest.approx(0.2)
+
+
+def test_the_interval_holds_what_all_strides_share(stride, description):
+    alone, together = SessionTotals(), SessionTotals(shared=SharedErrors(description, PARAMETERS.shared))
+    for totals in (alone, together):
+        for index in range(6):
+            for side in Side:
+                totals.add(stride(side, index))
+    narrow, wide = table(alone)["walking_speed", None], table(together)["walking_speed", None]
+    assert (narrow.low, narrow.high) == pytest.approx((1.2, 1.2))
+    # A body measured to 3 %: 1.2 m/s +- 7 % at least.
+    assert wide.high - 1.2 == pytest.approx(1.2 - wide.low)
+    assert wide.high - 1.2 > 1.96 * 0.03 * 1.2
