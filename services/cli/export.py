@@ -44,7 +44,7 @@ def export(
             format_of(name)
         found = _session(session, bar)
         for name in formats or FORMATS:
-            reason = None if formats else why_not(name, found)
+            reason = None if formats else why_not(name, found.signals, found.description.estimator)
             if reason is not None:
                 _leave_out(name, reason)
                 continue

@@ -120,15 +120,15 @@ FORMATS: dict[str, Format] = {
 }
 
 
-def why_not(name: str, session: Session) -> str | None:
+def why_not(name: str, signals: frozenset[str], estimator: str) -> str | None:
     """Why a format cannot be had of a session; None when nothing speaks against it. Raises ExportError as `format_of`.
 
     It is told from which messages there are: writing may still find that what they say is too little.
     """
     needs = format_of(name).needs
-    if needs.name not in session.signals:
+    if needs.name not in signals:
         return f"the session holds no {needs.name} messages: {needs.meaning}"
-    if name == "trc" and session.description.estimator in KNEE_ESTIMATORS:
+    if name == "trc" and estimator in KNEE_ESTIMATORS:
         return "joint centres need hip and knee of a leg; this session told single knees"
     return None
 
@@ -150,7 +150,7 @@ def write(name: str, session: Session, file: BinaryIO, options: Options | None =
 
     Raises ExportError: the format is not known, or the session cannot be told in it. What reading raises passes.
     """
-    reason = why_not(name, session)
+    reason = why_not(name, session.signals, session.description.estimator)
     if reason is not None:
         raise ExportError("session", reason, "choose another format")
     size = 0

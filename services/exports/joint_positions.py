@@ -1,4 +1,7 @@
-"""Where joint centres are: as a camera session tells them, else by forward kinematics of the lower body."""
+"""Where joint centres are: as a camera session tells them, else by forward kinematics of the lower body.
+
+The body model is imported where it is used: it brings a compiler, which the gateway need not load to start.
+"""
 
 from typing import NamedTuple
 
@@ -7,7 +10,6 @@ from numpy.typing import NDArray
 
 from schemas.session import Anthropometry
 from schemas.vocabulary import LOWER_BODY, JointCentre, Segment
-from services.biomech.lower_body import LowerBodyModel
 from services.exports.motion import Array, Motion, Track
 
 IN_ROOM = "in the room of the camera, y up"
@@ -55,6 +57,8 @@ def joint_positions(motion: Motion, anthropometry: Anthropometry) -> Positions |
 
 def leg_track(angles: Track, told: frozenset[str], anthropometry: Anthropometry) -> Track:
     """Centres of LEG_CENTRES for the angles of LOWER_BODY, those that are not told at zero."""
+    from services.biomech.lower_body import LowerBodyModel
+
     names = [freedom.name for freedom in LOWER_BODY]
     known = np.array([name in told for name in names])
     rotation, origin = leg_poses(np.where(known, angles.value[..., 0], 0.0), anthropometry)
@@ -76,6 +80,8 @@ def leg_poses(position: Array, anthropometry: Anthropometry) -> tuple[Array, Arr
 
     R_j = R_parent Rot(e_j, q_j), o_j = o_parent + R_parent r_j, all samples at a time.
     """
+    from services.biomech.lower_body import LowerBodyModel
+
     body = LowerBodyModel(anthropometry).body
     n, joints = position.shape
     rotation, origin = np.empty((n, joints, 3, 3)), np.empty((n, joints, 3))

@@ -146,13 +146,14 @@ def _around(track: Track, times_ns: Times) -> Track:
 
 
 def _slopes(track: Track) -> Array:
-    """Derivative at each sample; beside an invalid sample that of the other side alone."""
-    seconds = (track.times_ns - track.times_ns[0]) * 1e-9
-    slope = np.gradient(track.value, seconds, axis=0)
-    secant = np.diff(track.value, axis=0) / np.diff(seconds)[:, None, None]
-    broken_before, broken_after = ~track.valid[:-1], ~track.valid[1:]
-    slope[1:-1] = np.where(broken_before[:-1, :, None], secant[1:], slope[1:-1])
-    slope[1:-1] = np.where(broken_after[1:, :, None], secant[:-1], slope[1:-1])
+    """Derivative at each sample from both its neighbours; beside an invalid sample, and at the ends, from one."""
+    steps = (np.diff(track.times_ns) * 1e-9)[:, None, None]
+    secant = np.diff(track.value, axis=0) / steps
+    slope = np.concatenate([secant[:1], secant])
+    slope[1:-1] = (steps[1:] * secant[:-1] + steps[:-1] * secant[1:]) / (steps[:-1] + steps[1:])
+    broken_before, broken_after = ~track.valid[:-2, :, None], ~track.valid[2:, :, None]
+    slope[1:-1] = np.where(broken_before, secant[1:], slope[1:-1])
+    slope[1:-1] = np.where(broken_after, secant[:-1], slope[1:-1])
     return np.asarray(slope)
 
 

@@ -13,6 +13,7 @@ from services.gateway import pages, problems
 from services.gateway.context import Gateway
 from services.gateway.control import Control
 from services.gateway.database import open_database
+from services.gateway.exports.routes import router as exports
 from services.gateway.health.routes import router as health
 from services.gateway.live.hub import LiveHub
 from services.gateway.live.routes import router as live_routes
@@ -27,6 +28,7 @@ from services.gateway.sessions.routes import router as sessions
 from services.gateway.settings import GatewaySettings
 from services.gateway.sources.routes import router as sources
 from services.gateway.treatments.routes import router as treatments
+from services.gateway.versions.routes import router as versions
 from services.gateway.visits.routes import router as visits
 
 DESCRIPTION = "Patients, sessions, metrics and recordings of one Ambula site. Research software, not a medical device."
@@ -39,6 +41,8 @@ ROUTERS = (
     references,
     sessions,
     recordings,
+    exports,
+    versions,
     sources,
     health,
     live_routes,

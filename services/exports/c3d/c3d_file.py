@@ -65,7 +65,9 @@ def c3d_file(
     yield _header(points, times_ns.size, rate_hz, data_start)
     yield encode_groups([_point(*about, data_start=data_start), *others])
     yield from frames(motion, positions, outputs, times_ns, rate_hz)
-    yield bytes(-(times_ns.size * points * 16) % BLOCK)
+    # Where the count does not fit its word, readers take frames to the end of the file: no filling up of a block then.
+    if times_ns.size <= _MOST_FRAMES_IN_A_WORD:
+        yield bytes(-(times_ns.size * points * 16) % BLOCK)
 
 
 def _header(points: int, count: int, rate_hz: float, data_start: int) -> bytes:

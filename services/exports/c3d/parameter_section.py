@@ -17,6 +17,8 @@ INTEL = 84
 _MOST_BLOCKS = 255
 _MOST_LENGTH = 255
 """A dimension is one byte."""
+_MOST_BYTES = 32_000
+"""The way to the next parameter is a signed word."""
 
 Value = int | float | str | Sequence[str] | NDArray[np.float32] | NDArray[np.int16]
 
@@ -75,6 +77,8 @@ def encode_value(parameter: Parameter) -> bytes:
 def _record(name: str, number: int, value: bytes, description: str) -> bytes:
     text = _ascii(description)[:_MOST_LENGTH]
     after = value + bytes([len(text)]) + text
+    if len(after) > _MOST_BYTES:
+        raise ExportError(f"c3d.{name}", f"{len(after)} bytes, more than {_MOST_BYTES}", "export the CSV tables")
     return struct.pack("<bb", len(name), number) + name.encode("ascii") + struct.pack("<h", len(after) + 2) + after
 
 

@@ -8,7 +8,6 @@ import numpy as np
 from schemas.kinematics import JointCentres, JointState
 from schemas.session import Anthropometry
 from schemas.vocabulary import JointCentre
-from services.biomech.lower_body import SEGMENTS, LowerBodyModel
 from services.exports.facts import freedoms_of
 from services.exports.joint_positions import LEG_CENTRES, leg_poses, leg_track
 from services.exports.motion import Array, Flags, Track
@@ -80,6 +79,8 @@ class Skeletons:
 
 
 def _posed(times: list[int], position: Array, valid: list[bool], anthropometry: Anthropometry) -> Iterator[Skeleton]:
+    from services.biomech.lower_body import SEGMENTS, LowerBodyModel
+
     names = [freedom.name for freedom in freedoms_of("lower_body")]
     told = frozenset(name for name, known in zip(names, valid, strict=True) if known)
     track = Track(np.array(times), position[..., None], np.tile(np.array(valid), (len(times), 1)))
