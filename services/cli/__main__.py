@@ -30,7 +30,8 @@ Source = Annotated[
     typer.Argument(
         metavar="PATH",
         help="A folder with a recording.toml, an .mcap file of Ambula, the name of a shipped manifest"
-        " (neura_s02_walk), synthetic:walk?speed=1.1&seed=3, synthetic:march?metronome=70&seed=3,"
+        " (neura_s02_walk), synthetic:walk?speed=1.1&seed=3, synthetic:walk?patient=hemiparetic&speed=0.4,"
+        " synthetic:march?metronome=70&seed=3,"
         " synthetic:tug?seed=3, synthetic:knee?exercise=1&seed=3 or synthetic:squat?seed=3;"
         " or a Kinect: device:kinect?port=7788",
     ),
@@ -186,7 +187,7 @@ def exemplar(
 @app.command()
 def synth(
     folder: Annotated[Path, typer.Option("--out", help="folder for the recording; made when it is missing")],
-    walk: Annotated[str, typer.Option(help="as in a source name, e.g. speed=1.3&asymmetry=0.2&seed=7")] = "",
+    walk: Annotated[str, typer.Option(help="as in a source name, e.g. speed=1.3&seed=7 or patient=steppage")] = "",
     march: Annotated[str | None, typer.Option(help="march on the spot instead, e.g. metronome=70&seed=7")] = None,
     tug: Annotated[str | None, typer.Option(help="a timed up and go instead, e.g. walkway=3&seed=7")] = None,
     knee: Annotated[str | None, typer.Option(help="an exercise of a knee instead, e.g. exercise=1&seed=7")] = None,

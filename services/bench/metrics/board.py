@@ -6,6 +6,7 @@ from typing import NamedTuple
 
 from rich.progress import Progress
 
+from services.bench.metrics import exports, patients
 from services.bench.report import Section, report_text, write_report
 from services.bench.scoreboard import Row, Scoreboard
 from services.ingest.errors import MissingFile
@@ -21,7 +22,10 @@ class Part(NamedTuple):
     """How often it advances."""
 
 
-SECTIONS: dict[str, Part] = {}
+SECTIONS: dict[str, Part] = {
+    "patients": Part(patients.patients_section, patients.STEPS),
+    "exports": Part(exports.run, exports.STEPS),
+}
 """By the name that `ambula bench metrics NAME` takes, in the order of the report."""
 HOW_TO_READ = """What a physiotherapist is told, against what is known. Everything comes from `ambula bench metrics`;
 numbers follow from seeds and recordings alone, run times from this machine."""

@@ -77,7 +77,7 @@ class SyntheticSixMinutes(CorridorWalk):
         gait, timeline, size = _body(parameters)
         timeline = replace(timeline, fades=(parameters.standing, parameters.duration, parameters.decline))
         walker = Walker.at(parameters.standing, timeline, gait)
-        self.test_duration_s = parameters.duration
+        self.test_duration_s, self.decline = parameters.duration, parameters.decline
         self.start_s = parameters.standing
         self.end_s = parameters.standing + parameters.duration
         self.rests: tuple[tuple[float, float], ...] = tuple(_walk_for_time(walker, parameters, size, self.end_s))

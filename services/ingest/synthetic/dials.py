@@ -8,9 +8,12 @@ from urllib.parse import parse_qsl
 from services.ingest.errors import InvalidOption
 
 
-def dial(default: float, low: float, high: float, meaning: str) -> Any:
-    """A dataclass field; whole numbers where the default is one."""
-    return field(default=default, metadata={"low": low, "high": high, "meaning": meaning})
+def dial(default: float, low: float, high: float, meaning: str, words: tuple[str, ...] = ()) -> Any:
+    """A dataclass field; whole numbers where the default is one. `words` may be written for the numbers 0, 1, ..."""
+    if words:
+        listed = ", ".join(f"{number} {words[number]}" for number in range(int(low), int(high) + 1))
+        meaning = f"{meaning}: {listed}"
+    return field(default=default, metadata={"low": low, "high": high, "meaning": meaning, "words": words})
 
 
 @dataclass(frozen=True)
@@ -37,7 +40,8 @@ class Dials:
 
 
 def _number(dial: "dataclasses.Field[Any]", text: str) -> float:
-    low, high = dial.metadata["low"], dial.metadata["high"]
+    low, high, words = (dial.metadata[name] for name in ("low", "high", "words"))
+    text = str(words.index(text)) if text and text in words else text
     try:
         value: float = int(text) if isinstance(dial.default, int) else float(text)
     except ValueError as error:

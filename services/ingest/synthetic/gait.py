@@ -120,21 +120,7 @@ class Gait:
         return np.where(down | (strides.amplitude.value == 0), 1.0, 0.0)
 
     def _hung_from_pelvis(self, angles: dict[str, Jet], strides: Strides) -> dict[Segment, BodyMotion]:
-        """All segments with the pelvis held at the origin."""
-        body = at_rest(len(strides.phase.value))
-        for dof in PELVIS_ROTATIONS:
-            body = body.turned(dof.axis, angles[dof.name])
-        found = {Segment.PELVIS: body}
-        for side in Side:
-            hip = body.point(np.array([0.0, 0.0, _LATERAL[side] * self.hip_width / 2]))
-            thigh = _through_joint(body.moved(hip), "hip", side, angles)
-            knee = thigh.point(np.array([0.0, -self.thigh_length, 0.0]))
-            shank = _through_joint(thigh.moved(knee), "knee", side, angles)
-            ankle = shank.point(np.array([0.0, -self.shank_length, 0.0]))
-            found[Segment(f"thigh_{side}")] = thigh
-            found[Segment(f"shank_{side}")] = shank
-            found[Segment(f"foot_{side}")] = self._foot(strides, side).moved(ankle)
-        return found
+        return hung_legs(self, angles, {side: self._foot(strides, side) for side in Side})
 
     def _foot(self, strides: Strides, side: Side) -> BodyMotion:
         """The foot keeps to the heading and pitches against the ground, whatever the shank does above it."""
@@ -169,7 +155,25 @@ class Gait:
         return supports
 
 
-def _through_joint(parent: BodyMotion, joint: str, side: Side, angles: dict[str, Jet]) -> BodyMotion:
+def hung_legs(body_of: Gait, angles: Mapping[str, Jet], feet: Mapping[Side, BodyMotion]) -> dict[Segment, BodyMotion]:
+    """All segments with the pelvis held at the origin; `feet` are turned as they are in the room."""
+    body = at_rest(len(angles["pelvis_rotation"].value))
+    for dof in PELVIS_ROTATIONS:
+        body = body.turned(dof.axis, angles[dof.name])
+    found = {Segment.PELVIS: body}
+    for side in Side:
+        hip = body.point(np.array([0.0, 0.0, _LATERAL[side] * body_of.hip_width / 2]))
+        thigh = _through_joint(body.moved(hip), "hip", side, angles)
+        knee = thigh.point(np.array([0.0, -body_of.thigh_length, 0.0]))
+        shank = _through_joint(thigh.moved(knee), "knee", side, angles)
+        ankle = shank.point(np.array([0.0, -body_of.shank_length, 0.0]))
+        found[Segment(f"thigh_{side}")] = thigh
+        found[Segment(f"shank_{side}")] = shank
+        found[Segment(f"foot_{side}")] = feet[side].moved(ankle)
+    return found
+
+
+def _through_joint(parent: BodyMotion, joint: str, side: Side, angles: Mapping[str, Jet]) -> BodyMotion:
     body = parent
     for dof in LOWER_BODY:
         if dof.name.startswith(joint) and dof.name.endswith(side):

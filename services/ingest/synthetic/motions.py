@@ -6,9 +6,11 @@ from services.ingest.errors import UnknownSource
 from services.ingest.synthetic.block import SimulatedSession
 from services.ingest.synthetic.corridor import SyntheticSixMinutes, SyntheticTenMetres
 from services.ingest.synthetic.corridor_parameters import SixMinutesParameters, TenMetresParameters
+from services.ingest.synthetic.kinds import PLAIN
 from services.ingest.synthetic.knee_flexion import SyntheticKnee
 from services.ingest.synthetic.march import SyntheticMarch
 from services.ingest.synthetic.parameters import KneeParameters, MarchParameters, TugParameters, WalkParameters
+from services.ingest.synthetic.patients.walk import PatientWalk
 from services.ingest.synthetic.tug import SyntheticTug
 from services.ingest.synthetic.walk import SyntheticWalk
 from services.ingest.synthetic.whole_body.parameters import (
@@ -20,6 +22,10 @@ from services.ingest.synthetic.whole_body.parameters import (
 )
 
 
+def _walk(parameters: WalkParameters) -> SimulatedSession:
+    return SyntheticWalk(parameters) if parameters.patient == PLAIN else PatientWalk(parameters)
+
+
 def _task(parameters: TaskParameters) -> SimulatedSession:
     # The body's kinematics bring a compiler along, which an ingest without such a session does without.
     from services.ingest.synthetic.whole_body.exercise import SyntheticTask
@@ -28,7 +34,7 @@ def _task(parameters: TaskParameters) -> SimulatedSession:
 
 
 MOTIONS: dict[str, Callable[[str], SimulatedSession]] = {
-    "walk": lambda options: SyntheticWalk(WalkParameters.parse(options)),
+    "walk": lambda options: _walk(WalkParameters.parse(options)),
     "march": lambda options: SyntheticMarch(MarchParameters.parse(options)),
     "knee": lambda options: SyntheticKnee(KneeParameters.parse(options)),
     "six_minutes": lambda options: SyntheticSixMinutes(SixMinutesParameters.parse(options)),

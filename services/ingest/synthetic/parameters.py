@@ -5,6 +5,7 @@ from dataclasses import dataclass
 from typing import ClassVar
 
 from services.ingest.synthetic.dials import Dials, dial
+from services.ingest.synthetic.kinds import KINDS
 from services.ingest.synthetic.whole_body.parameters import BesideSensorsParameters
 
 
@@ -38,6 +39,7 @@ class SessionParameters(Dials):
     thigh_length: float = dial(0.41, 0.2, 0.6, "m, hip centre to knee centre")
     shank_length: float = dial(0.40, 0.2, 0.6, "m, knee centre to ankle centre")
     hip_width: float = dial(0.18, 0.08, 0.35, "m, between the hip centres")
+    tape: float = dial(0.0, 0.0, 0.1, "relative standard deviation of each length of the body as declared")
 
 
 @dataclass(frozen=True)
@@ -56,6 +58,8 @@ class WalkParameters(BeforeCameraParameters):
     turn_every: float = dial(0.0, 0.0, 3600.0, "s from turn to turn; 0 walks straight on")
     turn_angle: float = dial(math.pi, 0.0, 2 * math.pi, "rad per turn, to the left and to the right in turn")
     turn_time: float = dial(3.0, 1.0, 30.0, "s that a turn takes")
+    patient: int = dial(0, 0, 4, "manner of walking, also of a healthy body drawn by the seed", words=KINDS)
+    affected: int = dial(2, 1, 2, "leg of the patient that differs", words=("", "left", "right"))
 
 
 @dataclass(frozen=True)

@@ -124,18 +124,27 @@ class SyntheticSession(ABC):
             walk_path="turning" if self.camera is None else "straight",
             hubs=self._hubs,
             cameras=[] if self.camera is None else [self.camera.camera_description()],
-            anthropometry=Anthropometry(
-                height_m=None if self.camera is None else self.camera.stature,
-                mass_kg=None,
-                thigh_length_m=parameters.thigh_length,
-                shank_length_m=parameters.shank_length,
-                hip_width_m=parameters.hip_width,
-                source="measured",
-            ),
+            anthropometry=self._measured_body,
             standing=[],
             reference=reference_channels(self.own_channels, self._seen_channels) if parameters.truth else [],
             duration_s=(self.sample_count - 1) / parameters.rate,
             known_rhythms=[],
+        )
+
+    @property
+    def _measured_body(self) -> Anthropometry:
+        """What a tape says of the body."""
+        rng = np.random.default_rng([self.parameters.seed, 8])
+        wrong = 1.0 + self.parameters.tape * np.clip(rng.standard_normal(3), -2.5, 2.5)
+        true = np.array([self.gait.thigh_length, self.gait.shank_length, self.gait.hip_width])
+        thigh, shank, hips = (float(length) for length in true * wrong)
+        return Anthropometry(
+            height_m=None if self.camera is None else self.camera.stature,
+            mass_kg=None,
+            thigh_length_m=thigh,
+            shank_length_m=shank,
+            hip_width_m=hips,
+            source="measured",
         )
 
     @property
@@ -168,7 +177,15 @@ class SyntheticSession(ABC):
 
     def body(self, time_s: Array) -> WalkingBody:
         """The moving body at increasing instants; its path starts at the first of them."""
-        return self.gait.body(self.strides(time_s), time_s)
+        return self.moved(self.strides(time_s), time_s)
+
+    def moved(self, strides: Strides, time_s: Array) -> WalkingBody:
+        """The body at increasing instants, given where it is in its strides."""
+        return self.gait.body(strides, time_s)
+
+    def walking_speed(self, _time_s: Array, strides: Strides) -> Array:
+        """m/s (n,), mean over a stride."""
+        return np.asarray(self.stride_length(strides.amplitude.value)) * strides.phase.rate
 
     def samples(self) -> Iterator[Block]:
         """The session from its first sample to its last."""
@@ -180,7 +197,7 @@ class SyntheticSession(ABC):
             time_s = numbers / self.parameters.rate
             captured_ns = np.round(time_s * 1e9).astype(np.int64)[:-1]
             strides = self.strides(time_s)
-            body = self.gait.body(strides, time_s)
+            body = self.moved(strides, time_s)
             sensors = [self._track(mount, index, body, strides, captured_ns) for mount in self.mounts]
             truth = ReferenceTrack(captured_ns, self._truth(body, strides, start, time_s)[:-1])
             next_ns = round(time_s[-1] * 1e9) if first + count < self.sample_count else captured_ns[-1] + 1
@@ -205,7 +222,7 @@ class SyntheticSession(ABC):
 
     def _truth(self, body: WalkingBody, strides: Strides, start: Array, time_s: Array) -> Array:
         walking = strides.phase.rate
-        speed = np.asarray(self.stride_length(strides.amplitude.value)) * walking
+        speed = self.walking_speed(time_s, strides)
         columns = [body.angles[dof.name].value for dof in LOWER_BODY]
         columns += [body.contact[side] for side in Side]
         columns += [speed, 2 * math.pi * strides.phase.value, 2 * math.pi * walking]
