@@ -32,6 +32,9 @@ class Basis(StrEnum):
     COUNT = "count"
 
 
+ANGLES = (Basis.PELVIS, Basis.HIP, Basis.KNEE, Basis.ANKLE)
+
+
 @dataclass(frozen=True, slots=True)
 class Definition:
     """`measure` gives the value of one stride; None where the metric rests on others.

@@ -4,7 +4,6 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field
 
 from schemas.metrics import DoubtKind
-from services.definitions.definition import Basis
 
 
 @dataclass(frozen=True, slots=True)
@@ -26,37 +25,55 @@ class SharedErrorParameters:
     """s by which initial contacts are early or late."""
     toe_off_bias_s: float = 0.03
     """s by which toe-offs are."""
-    foot_difference_s: float = 0.015
+    foot_difference_s: float = 0.009
     """s by which one foot's contacts are later than the other's."""
     relative_stride_time: float = 0.002
     """of times from contact to contact: a clock, and a walk of seconds for how somebody walks."""
-    event_jitter_s: float = 0.02
-    """s of scatter that events have from stride to stride because they are measured."""
-    length_jitter: float = 0.02
+    contact_jitter_s: float = 0.02
+    """s of scatter from stride to stride that contacts have because they are measured."""
+    toe_off_jitter_s: float = 0.03
+    """the same of toe-offs."""
+    length_jitter: float = 0.025
     """m, or m/s, of scatter that steps have because they are measured."""
-    circumduction_m: float = 0.012
+    circumduction_m: float = 0.009
     """m."""
     width_m: float = 0.02
-    """m of a camera's step width."""
-    angles: Mapping[Basis, tuple[float, float]] = field(
+    """m of a camera's step width (proposal; no synthetic patient walks before a camera)."""
+    levels: Mapping[str, float] = field(
         default_factory=lambda: {
-            Basis.KNEE: (0.04, 0.05),
-            Basis.HIP: (0.05, 0.03),
-            Basis.PELVIS: (0.005, 0.006),
-            Basis.ANKLE: (0.09, 0.05),
+            "knee_flexion": 0.025,
+            "hip_flexion": 0.06,
+            "hip_adduction": 0.01,
+            "hip_rotation": 0.012,
+            "pelvis_tilt": 0.002,
+            "ankle_dorsiflexion": 0.09,
         }
     )
-    """rad, of angles at an instant or over the stride, and of ranges."""
-    ratios: Mapping[Basis, float] = field(
+    """rad, of angles at an instant or over the stride, by how the metric's name begins. Of sensors that sit as on the
+    synthetic patients: in people absolute angles are 7 to 10 deg off everywhere."""
+    extents: Mapping[str, float] = field(
         default_factory=lambda: {
-            Basis.LENGTHS: 0.06,
-            Basis.CONTACTS: 0.03,
-            Basis.TOE_OFFS: 0.04,
-            Basis.KNEE: 0.03,
-            Basis.HIP: 0.04,
+            "knee_flexion": 0.04,
+            "hip_flexion": 0.02,
+            "hip_rotation": 0.027,
+            "pelvis_tilt": 0.0065,
+            "pelvis_obliquity": 0.0027,
+            "pelvis_rotation": 0.0026,
         }
     )
-    """relative, of the ratio of both sides."""
+    """rad, of ranges, and of the knee's peak in swing, which a filter cuts off like a range."""
+    ratios: Mapping[str, float] = field(
+        default_factory=lambda: {
+            "step_length": 0.065,
+            "step_time": 0.035,
+            "stance_time": 0.025,
+            "swing_time": 0.065,
+            "single_support_time": 0.065,
+            "knee_flexion_range": 0.08,
+            "hip_flexion_range": 0.03,
+        }
+    )
+    """relative, of the ratio of both sides of a measure: what both share cancels in it."""
 
 
 @dataclass(frozen=True, slots=True)

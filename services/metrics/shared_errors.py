@@ -8,7 +8,7 @@ import math
 from collections.abc import Mapping
 
 from schemas.session import SessionDescription
-from services.definitions.definition import Basis, Definition
+from services.definitions.definition import ANGLES, Basis, Definition
 from services.metrics.parameters import SharedErrorParameters
 
 FILTER_STEP = "step"
@@ -24,7 +24,13 @@ _EVENT_PAIRS = {
     "terminal_double_support": 1.0,
     "double_support": 2.0,
 }
-_STEPS_IN = {"step_length": 1.0, "stride_length": 2.0, "walking_speed": 2.0}
+_STEPS_IN = {"step_length": 1.0, "stride_length": math.sqrt(2.0), "walking_speed": math.sqrt(2.0)}
+"""How many times the deviation of one step is in it: a stride is the sum of two that err independently."""
+_EXTENTS = ("_range", "_peak_swing")
+_OTHER_WAY = {"hip_extension": "hip_flexion", "hip_abduction": "hip_adduction"}
+"""Metrics that count an angle the other way."""
+_CURVES = {"hip_rotation": "hip_internal_rotation"}
+"""Joints whose curve is called otherwise than its metrics."""
 
 
 class SharedErrors:
@@ -47,7 +53,7 @@ class SharedErrors:
             return seconds if what == "time" else seconds / stride_time_s
         if definition.basis is Basis.CONTACTS:
             return self._of_contacts(name, value)
-        if definition.basis in p.angles:
+        if definition.basis in ANGLES:
             return self._of_angle(definition, side, deviations)
         return p.width_m if definition.basis is Basis.WIDTH else 0.0
 
@@ -68,22 +74,27 @@ class SharedErrors:
         return math.hypot(self._length * value, filtered, p.relative_stride_time * value)
 
     def _of_angle(self, definition: Definition, side: str | None, deviations: Deviations) -> float:
-        p = self._p
-        level, extent = p.angles[definition.basis]
-        if definition.name.endswith("_range"):
-            return extent
-        seen = [std for joint, std in deviations.items() if joint.startswith(definition.basis.value)]
-        own = [std for joint, std in deviations.items() if joint == f"{definition.basis}_flexion_{side}"]
-        filtered = (own or seen or [0.0])[0]
-        return math.hypot(level, p.filter_share * filtered)
+        name, p = definition.name, self._p
+        joint = "_".join(name.split("_")[:2])
+        joint = _OTHER_WAY.get(joint, joint)
+        if name.endswith(_EXTENTS) and joint in p.extents:
+            return p.extents[joint]
+        curve = _CURVES.get(joint, joint)
+        filtered = deviations.get(f"{curve}_{side}" if side else curve, 0.0)
+        return math.hypot(p.levels.get(joint, 0.0), p.filter_share * filtered)
 
     def log_std(self, definition: Definition) -> float:
         """Of a ratio of both sides, relative: what both sides share cancels, this is what does not."""
-        return self._p.ratios.get(definition.basis, 0.0)
+        measures = (name for name in self._p.ratios if definition.name.startswith(f"{name}_"))
+        return max((self._p.ratios[name] for name in measures), default=0.0)
 
     def noise(self, definition: Definition, mean: float) -> float:
         """Scatter from stride to stride that measuring adds, in the unit of a standard deviation or, as a CV, of 1."""
         p = self._p
-        absolute = {Basis.CONTACTS: p.event_jitter_s, Basis.TOE_OFFS: p.event_jitter_s, Basis.LENGTHS: p.length_jitter}
+        absolute = {
+            Basis.CONTACTS: p.contact_jitter_s,
+            Basis.TOE_OFFS: p.toe_off_jitter_s,
+            Basis.LENGTHS: p.length_jitter,
+        }
         jitter = absolute.get(definition.basis, 0.0)
         return jitter / mean if definition.name.endswith("_cv") and mean > 0 else jitter

@@ -5,7 +5,7 @@ from collections.abc import Mapping, Sequence
 from schemas.metrics import Doubt, DoubtKind, Metric, TrustGrade
 from schemas.quality import DataQuality, SourceQuality
 from schemas.session import SessionDescription
-from services.definitions.definition import Basis, Definition
+from services.definitions.definition import ANGLES, Basis, Definition
 from services.definitions.table import BY_NAME
 from services.metrics.inputs import Inputs, Sources
 from services.metrics.intervals import Z95
@@ -13,7 +13,6 @@ from services.metrics.parameters import PLAUSIBLE, RULES, USEFUL_CHANGE, WEAK
 from services.metrics.trust_words import withheld_line
 
 GRADES = (TrustGrade.GOOD, TrustGrade.FAIR, TrustGrade.POOR, TrustGrade.WITHHELD)
-ANGLES = (Basis.PELVIS, Basis.HIP, Basis.KNEE, Basis.ANKLE)
 OF_STRIDES = (Basis.CONTACTS, Basis.TOE_OFFS, Basis.LENGTHS, Basis.WIDTH, *ANGLES)
 FILTERED = (Basis.LENGTHS, *ANGLES)
 """What the filter estimates, and settles into."""

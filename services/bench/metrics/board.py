@@ -6,7 +6,7 @@ from typing import NamedTuple
 
 from rich.progress import Progress
 
-from services.bench.metrics import exports, patients
+from services.bench.metrics import coverage, exports, patients
 from services.bench.report import Section, report_text, write_report
 from services.bench.scoreboard import Row, Scoreboard
 from services.ingest.errors import MissingFile
@@ -24,6 +24,7 @@ class Part(NamedTuple):
 
 SECTIONS: dict[str, Part] = {
     "patients": Part(patients.patients_section, patients.STEPS),
+    "coverage": Part(coverage.coverage_section, coverage.STEPS),
     "exports": Part(exports.run, exports.STEPS),
 }
 """By the name that `ambula bench metrics NAME` takes, in the order of the report."""
