@@ -19,6 +19,7 @@ from services.definitions.repetitions import (
 )
 from services.flow.node import State
 from services.metrics import summary
+from services.metrics.intervals import of_mean
 from services.metrics.moments import Moments
 from services.metrics.parameters import MetricsParameters
 from services.metrics.trend import Trend
@@ -75,7 +76,7 @@ class MovementTotals:
         because = summary.too_few(count, least, NOUN)
         if because is not None or slope is None:
             return summary.withheld(RANGE_SLOPE, side, count, because or summary.too_few(count, 3, NOUN) or "")
-        return summary.shown(RANGE_SLOPE, side, slope[0], None, slope[1], count)
+        return summary.shown(RANGE_SLOPE, side, slope[0], None, slope[1], count, of_mean(*slope, count - 2))
 
     def _tempo(self, side: str | None, least: int) -> Metric:
         """60 / mean interval; its spread and error follow to first order."""
@@ -83,9 +84,9 @@ class MovementTotals:
         if mean.value is None or mean.spread is None or mean.mean_std is None:
             return mean
         tempo = 60.0 / mean.value
-        return summary.shown(
-            TEMPO, side, tempo, tempo * mean.spread / mean.value, tempo * mean.mean_std / mean.value, mean.strides
-        )
+        spread, error = (tempo * std / mean.value for std in (mean.spread, mean.mean_std))
+        interval = of_mean(tempo, error, mean.strides - 1)
+        return summary.shown(TEMPO, side, tempo, spread, error, mean.strides, interval)
 
     def snapshot(self) -> State:
         """All sums."""

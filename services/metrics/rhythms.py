@@ -11,6 +11,7 @@ from schemas.vocabulary import Side
 from services.biomech.rhythm.comparison import Comparison, Leg, compare_legs
 from services.definitions.definition import Definition
 from services.definitions.rhythm import COMPARED_WITH, SIDE_DISTANCE, SIDE_SHAPE, SIDE_TIMING
+from services.metrics.intervals import of_mean
 from services.metrics.summary import shown, withheld
 
 NOT_YET = "compared at the end of the session"
@@ -44,7 +45,8 @@ def _between_sides(learned: LearnedRhythm) -> list[Metric]:
     result = compare_legs(left, right)
     # The right leg has at phase W + shift what the left has at W: half a stride later in a symmetric walk.
     late = (result.shift % (2.0 * pi) - pi) / (2.0 * pi)
-    timing = shown(SIDE_TIMING, None, late, None, result.shift_std / (2.0 * pi), learned.strides)
+    error = result.shift_std / (2.0 * pi)
+    timing = shown(SIDE_TIMING, None, late, None, error, learned.strides, of_mean(late, error, learned.strides - 1))
     return [*_distances(result, SIDE_DISTANCE, SIDE_SHAPE, None, learned.strides), timing]
 
 
