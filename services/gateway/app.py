@@ -14,6 +14,7 @@ from services.gateway.context import Gateway
 from services.gateway.control import Control
 from services.gateway.database import open_database
 from services.gateway.exports.routes import router as exports
+from services.gateway.fhir.routes import router as fhir
 from services.gateway.health.routes import router as health
 from services.gateway.live.hub import LiveHub
 from services.gateway.live.routes import router as live_routes
@@ -22,6 +23,7 @@ from services.gateway.problems import ProblemOut
 from services.gateway.progress.routes import router as progress
 from services.gateway.recordings.routes import router as recordings
 from services.gateway.references.routes import router as references
+from services.gateway.report.routes import router as reports
 from services.gateway.security import BodyLimit, HostNames, SecurityHeaders
 from services.gateway.sessions.keeper import SessionKeeper
 from services.gateway.sessions.routes import router as sessions
@@ -39,10 +41,12 @@ ROUTERS = (
     progress,
     treatments,
     references,
+    reports,
     sessions,
     recordings,
     exports,
     versions,
+    fhir,
     sources,
     health,
     live_routes,

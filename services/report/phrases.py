@@ -11,7 +11,7 @@ from services.report.units import Measured
 _SHARES = (
     DoubtKind.COVERAGE, DoubtKind.REJECTED_CYCLES, DoubtKind.LOSS, DoubtKind.LATE, DoubtKind.NOT_LOCKED,
 )  # fmt: skip
-_MEASURE_PARAMETERS = ("change", "low", "high", "mdc", "half_interval", "smallest")
+_MEASURE_PARAMETERS = ("change", "low", "high", "mdc", "limit", "half_interval", "smallest")
 
 
 def grade_word(words: Catalogue, grade: TrustGrade | None) -> str:
@@ -86,7 +86,7 @@ def _shown(words: Catalogue, name: str, value: float | int | str | None, rule: R
         return Measured(words, "m/s", "walking_speed").full(value, signed=True)
     if name in ("distance_change", "motion_change", "low", "high") and not isinstance(value, str):
         return Measured(words, "rad", "side_distance").full(value, signed=True)
-    return _word(words, str(value))
+    return words.number(value, 2) if isinstance(value, float) else _word(words, str(value))
 
 
 def _word(words: Catalogue, value: str) -> str:

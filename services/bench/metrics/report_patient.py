@@ -17,7 +17,7 @@ from services.reference import bands
 from services.reference.folders import read_shelf
 from services.report.from_progress import progress_of
 from services.report.from_reference import references_of
-from services.report.source import Patient, ReportSource, Treatment
+from services.report.source import Patient, Progress, ReportSource, Treatment
 
 FIRST = datetime(2026, 9, 7, 9, 30, tzinfo=UTC)
 BETWEEN = timedelta(days=21)
@@ -29,13 +29,12 @@ WALKS = (
 )
 """One walk at each visit. The speeds are those that the simulation was given, not what is found."""
 SAID = {
-    "paretic_side": "left", "aid": "cane", "orthosis": "none", "footwear": "shoes", "physical_assistance": False,
+    "paretic_side": Side.LEFT, "aid": "cane", "orthosis": "none", "footwear": "shoes", "physical_assistance": False,
     "speed_instruction": "comfortable",
 }  # fmt: skip
 PATIENT = Patient("K7QM3F", 1957, Sex.FEMALE, Population.STROKE_CHRONIC)
 TREATMENTS = ((10, "gait_training"), (35, "botulinum_toxin"))
 """Days after the first visit."""
-NOT_ARCHIVED = None
 
 
 class Visited:
@@ -44,10 +43,12 @@ class Visited:
     def __init__(self, spec: str, number: int) -> None:
         source = open_source(spec)
         self.began = FIRST + number * BETWEEN
-        self.description: SessionDescription = source.describe().model_copy(
+        own = source.describe()
+        said = {name: value for name, value in own.conditions.model_dump().items() if value is not None}
+        self.description: SessionDescription = own.model_copy(
             update={
                 "session": f"visit{number + 1}",
-                "conditions": Conditions.model_validate(SAID),
+                "conditions": Conditions.model_validate(SAID | said),
                 "started_unix_ns": round(self.began.timestamp() * 1e9),
             }
         )
@@ -64,6 +65,7 @@ class Visited:
     @property
     def trial(self) -> Trial:
         """As progress takes it."""
+        body = self.description.anthropometry
         sensors = [f"{each.segment}:{each.placement}" for hub in self.description.hubs for each in hub.sensors]
         return Trial(
             session=self.description.session,
@@ -74,6 +76,8 @@ class Visited:
             walk_path=self.description.walk_path,
             estimator=self.description.estimator,
             sensors=tuple(sorted(sensors)),
+            leg_length_m=body.thigh_length_m + body.shank_length_m,
+            lengths_from=body.source,
             datum=None if self.calibration is None else self.calibration.datum,
             metrics=self.metrics,
         )
@@ -86,30 +90,35 @@ def walk_visits() -> list[Visited]:
 
 def report_of_last(visited: list[Visited]) -> ReportSource:
     """What the report of the last visit is made from."""
-    last = visited[-1]
-    assert last.metrics is not None
     sets = read_shelf([]).sets
     visits = in_visits(each.trial for each in visited)
     uses = {each.manifest.name: ReferenceUse(each.manifest.version, each.measures) for each in sets}
     baseline = freeze(visits, None, PATIENT.population, {name: use.version for name, use in uses.items()})
-    told = progress(visits, baseline, Person(PATIENT.population, Side(SAID["paretic_side"]), uses))
+    told = progress(visits, baseline, Person(PATIENT.population, Side.LEFT, uses))
     treatments = [Treatment((FIRST + timedelta(days=days)).date(), kind) for days, kind in TREATMENTS]
-    speed = next((each.value for each in last.metrics.metrics if each.name == "walking_speed"), None)
+    last = visited[-1]
+    return report_of(last, progress_of(last.description.session, visits, told, treatments))
+
+
+def report_of(visit: Visited, told: Progress | None = None) -> ReportSource:
+    """What the report of one session is made from; the recording is none of an archive."""
+    assert visit.metrics is not None
     assert PATIENT.year_of_birth is not None
-    person = bands.Person(float(last.began.year - PATIENT.year_of_birth), PATIENT.sex, speed)
-    datum = None if last.calibration is None else last.calibration.datum
-    references = references_of(sets, last.metrics, person, datum)
+    speed = next((each.value for each in visit.metrics.metrics if each.name == "walking_speed"), None)
+    person = bands.Person(float(visit.began.year - PATIENT.year_of_birth), PATIENT.sex, speed)
+    datum = None if visit.calibration is None else visit.calibration.datum
+    references = references_of(read_shelf([]).sets, visit.metrics, person, datum)
     return ReportSource(
-        description=last.description,
-        metrics=last.metrics,
-        calibration=last.calibration,
-        began=last.began,
+        description=visit.description,
+        metrics=visit.metrics,
+        calibration=visit.calibration,
+        began=visit.began,
         patient=PATIENT,
-        progress=progress_of(last.description.session, visits, told, treatments),
+        progress=told,
         references=references.ranges,
         reference_curves=references.curves,
         reference_gaps=references.gaps,
         installed_sets=references.sets,
-        recording_sha256=NOT_ARCHIVED,
+        recording_sha256=None,
         strides=(),
     )

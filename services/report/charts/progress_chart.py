@@ -7,6 +7,7 @@ from schemas.vocabulary import Side
 from services.report.charts.axes import Plot, digits_of, draw_axes, ticks
 from services.report.charts.canvas import SIDE_DASHES, TEXT_SIZE, Box, Canvas, Point
 from services.report.charts.colours import CHANGE_BAND, INK, LINE, REFERENCE, SIDE, SOFT_INK, WHITE, WHOLE
+from services.report.charts.labels import Label, apart
 
 WIDTH, HEIGHT = 136.0, 106.0
 LEFT, TOP, RIGHT, BOTTOM = 24.0, 20.0, 12.0, 14.0
@@ -75,7 +76,12 @@ def progress_chart(
         canvas.line((x, TOP), (x, plot.box.bottom), LINE, 0.9, "3 2")
         canvas.text((x, TOP - 2), treatment.letter, anchor="middle", colour=SOFT_INK, bold=True, size=7)
     for line in lines:
-        _line(canvas, plot, line, labels)
+        _line(canvas, plot, line)
+    ends = [
+        Label(plot.up(line.marks[-1].value), labels.letters[line.side], SIDE[line.side]) for line in lines if line.side
+    ]
+    for label in apart(ends, TEXT_SIZE):
+        canvas.text((plot.box.right + 3, label.at + TEXT_SIZE * 0.35), label.text, colour=label.colour, bold=True)
     canvas.text((0, 7.5), labels.y_axis, colour=SOFT_INK)
     canvas.text((WIDTH, HEIGHT - 3.5), labels.x_axis, anchor="end", colour=SOFT_INK)
     return canvas.svg(name, labels.title, labels.description)
@@ -119,7 +125,7 @@ def _bands(canvas: Canvas, plot: Plot, lines: Sequence[ProgressLine], reference:
         canvas.line((box.left, y), (box.right, y), colour, 0.7, "4 2")
 
 
-def _line(canvas: Canvas, plot: Plot, line: ProgressLine, labels: ProgressLabels) -> None:
+def _line(canvas: Canvas, plot: Plot, line: ProgressLine) -> None:
     colour = WHOLE if line.side is None else SIDE[line.side]
     points = [plot.at(mark.number, mark.value) for mark in line.marks]
     dash = None if line.side is None else SIDE_DASHES[line.side]
@@ -129,11 +135,6 @@ def _line(canvas: Canvas, plot: Plot, line: ProgressLine, labels: ProgressLabels
         if mark.low is not None and mark.high is not None:
             canvas.line((point[0], plot.up(mark.low)), (point[0], plot.up(mark.high)), colour, 0.8)
         _mark(canvas, point, mark, colour)
-    if line.side is not None:
-        end = points[-1]
-        canvas.text(
-            (plot.box.right + 3, end[1] + TEXT_SIZE * 0.35), labels.letters[line.side], colour=colour, bold=True
-        )
 
 
 def _mark(canvas: Canvas, at: Point, mark: VisitMark, colour: str) -> None:

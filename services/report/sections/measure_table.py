@@ -2,7 +2,7 @@
 
 from collections.abc import Sequence
 
-from schemas.metrics import Metric
+from schemas.metrics import DoubtKind, Metric
 from schemas.vocabulary import Side
 from services.report.catalogue import Catalogue
 from services.report.content import Cell, Column, Row, Table
@@ -58,7 +58,8 @@ def _row(source: ReportSource, words: Catalogue, name: str) -> tuple[Row, list[C
 
 
 def _is_seen(metric: Metric) -> bool:
-    return metric.value is not None or metric.strides > 0 or bool(metric.doubts)
+    told = [doubt.kind for doubt in metric.doubts]
+    return metric.value is not None or metric.strides > 0 or (bool(told) and DoubtKind.NOT_OBSERVED not in told)
 
 
 def _side(metric: Metric) -> Side | None:

@@ -11,7 +11,7 @@ from schemas.population import Population, Sex
 from schemas.session import Anthropometry, HubDescription, Placement, SensorDescription, SessionDescription
 from schemas.tasks import Repetition, TaskPhase
 from schemas.vocabulary import TASK_PHASES, Segment, Side, Task
-from services.progress.rules import RuleCode, Verdict, rule
+from services.progress.rules import Rule, RuleCode, Verdict, rule
 from services.report.source import (
     CurveDistance,
     JointChange,
@@ -145,7 +145,8 @@ def measure(
 ):
     def visit(k, value) -> VisitValue:
         change = None if k == 0 else value - values[0]
-        rules = (rule(RuleCode.CHANGE_BEYOND_MDC, value - values[0], 0.2, 0.3, mdc),)
+        numbers = {"change": value - values[0], "low": 0.2, "high": 0.3, "mdc": mdc, "limit": mdc}
+        rules = (Rule(RuleCode.CHANGE_BEYOND_MDC, numbers),)
         word = Verdict.CANNOT_TELL if k == 0 else verdict
         return VisitValue(k + 1, FIRST.replace(day=7 + 7 * k), value, value - 0.03, value + 0.03, change, word, rules)
 

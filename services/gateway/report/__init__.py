@@ -1,0 +1,1 @@
+"""Reports of sessions, as content, page and PDF."""
