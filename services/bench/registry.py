@@ -126,6 +126,13 @@ def metrics(json_path: Path | None = None, *section: str, report: Path | None = 
     return run(json_path, *section, report=report)
 
 
+def walking_tests(json_path: Path | None = None, *subject: str) -> Scoreboard:
+    """Six-minute and ten-metre walks: distance, turns, rests and speed in the timed zone against what was walked."""
+    from services.bench.walking_tests.board import run
+
+    return run(json_path, *subject)
+
+
 SCOREBOARDS: dict[str, Callable[..., Scoreboard]] = {
     "accuracy": accuracy,
     "chain": chain,
@@ -142,5 +149,6 @@ SCOREBOARDS: dict[str, Callable[..., Scoreboard]] = {
     "step": step,
     "strides": strides,
     "tug": tug,
+    "walking_tests": walking_tests,
     "walks": walks,
 }

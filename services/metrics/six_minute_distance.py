@@ -1,9 +1,10 @@
 """How far somebody walked in a corridor: by steps, by its lengths, and by both together."""
 
 import math
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from itertools import pairwise
+from statistics import median
 from typing import NamedTuple
 
 from schemas.tasks import TaskPhase
@@ -89,9 +90,37 @@ class Walked:
         scale = self.scale()
         return scale is None or abs(scale - 1) <= self.parameters.most_corridor_misfit
 
+    def odd_length(self) -> float | None:
+        """The share of the median by which a length differs so much that a turn was missed, or made on the way.
+
+        By their steps; where those have no length, by the time they took.
+        """
+        lengths = self._lengths_by(lambda part: part.walked_m)
+        most = self.parameters.most_length_misfit
+        if lengths is None:
+            lengths = self._lengths_by(lambda part: 0.0 if part.kind is TaskPhaseKind.REST else part.lasts_s)
+            most = self.parameters.most_time_misfit
+        usual = median(lengths) if lengths else 0.0
+        odd = max((abs(length / usual - 1) for length in lengths or ()), default=0.0) if usual else 0.0
+        return odd if odd > most else None
+
+    def _lengths_by(self, measure: Callable[[Part], float | None]) -> list[float] | None:
+        """Of each length up to the last turn; half of a turn belongs to either. None where a part is not known."""
+        sums = [0.0]
+        for part in self.parts:
+            value = measure(part)
+            if value is None:
+                return None
+            if part.kind is TaskPhaseKind.TURN:
+                sums[-1] += value / 2
+                sums.append(value / 2)
+            else:
+                sums[-1] += value
+        return sums[:-1]
+
     def by_laps(self) -> Distance | None:
         """Whole lengths and what was walked after half of the last turn; None before the first."""
-        if self.corridor_m is None or not self.turns or not self.fits():
+        if self.corridor_m is None or not self.turns or not self.fits() or self.odd_length() is not None:
             return None
         scale, strides = self.scale(), self.by_strides()
         if scale is not None and strides is not None:
@@ -117,7 +146,7 @@ class Walked:
 
     def until(self, at_s: float) -> float | None:
         """m by the clock of the test, steps scaled to the corridor where that is known; even speed within a part."""
-        fitting = self.scale() if self.fits() else None
+        fitting = self._believed_scale()
         total = 0.0
         for part in self.parts:
             if part.start_s >= at_s:
@@ -126,12 +155,12 @@ class Walked:
                 return None
             share = min(1.0, (at_s - part.start_s) / part.lasts_s) if part.lasts_s > 0 else 1.0
             total += share * part.walked_m
-        return total * (fitting or 1.0)
+        return total * fitting
 
     def lengths(self) -> list[tuple[float, float]]:
         """Walks from turn to turn: s at the middle, and speed m/s."""
         found = []
-        fitting = (self.scale() if self.fits() else None) or 1.0
+        fitting = self._believed_scale()
         kinds = [part.kind for part in self.parts]
         for i in range(1, len(self.parts) - 1):
             part = self.parts[i]
@@ -141,6 +170,9 @@ class Walked:
             if whole and part.walked_m is not None and part.lasts_s > self.parameters.shortest_length_s:
                 found.append(((part.start_s + part.end_s) / 2, fitting * part.walked_m / part.lasts_s))
         return found
+
+    def _believed_scale(self) -> float:
+        return (self.scale() or 1.0) if self.fits() and self.odd_length() is None else 1.0
 
     def _before_last_turn(self) -> float | None:
         """m of steps up to the middle of the last turn."""

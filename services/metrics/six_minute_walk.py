@@ -1,5 +1,6 @@
 """What a walk for time amounts to, so far and at its end."""
 
+import math
 from collections.abc import Iterable
 
 from schemas.metrics import Metric
@@ -23,6 +24,7 @@ from services.definitions.walking_tests import (
 )
 from services.flow.node import State
 from services.metrics import summary
+from services.metrics.intervals import Interval, of_mean
 from services.metrics.moments import Moments
 from services.metrics.parameters import MetricsParameters
 from services.metrics.phase_list import NO_HEADING, NO_STEP_LENGTHS, PhaseList, sees_heading, sees_step_lengths
@@ -91,11 +93,15 @@ class SixMinuteTotals:
         scale = walked.scale()
         if scale is not None and not walked.fits():
             return f"steps make {self._corridor_m / scale:.1f} m of what was said to be {self._corridor_m:.1f} m"
+        odd = walked.odd_length()
+        if odd is not None:
+            return f"a length differs by {100 * odd:.0f} % from the others: a turn was missed, or made on the way"
         return NO_END_REACHED if walked.parts else NOT_BEGUN
 
     def _minutes(self, walked: Walked, time_s: float) -> Iterable[Metric]:
         total = walked.combined()
         share = 0.0 if total is None or total.value_m <= 0 else total.std_m / total.value_m
+        share, place_m = max(share, WALKING_TESTS.scaled_step_share), math.sqrt(2) * WALKING_TESTS.stopping_place_m
         for k, definition in enumerate(SIX_MINUTE_SPEEDS):
             from_s, to_s = k * MINUTE_S, (k + 1) * MINUTE_S
             if to_s > self._duration_s + WALKING_TESTS.test_time_tolerance_s:
@@ -107,7 +113,8 @@ class SixMinuteTotals:
                 yield summary.withheld(definition, None, 0, NO_STEP_LENGTHS)
             else:
                 speed = (done - begun) / MINUTE_S
-                yield summary.shown(definition, None, speed, None, speed * share, 1)
+                std = math.hypot(speed * share, place_m / MINUTE_S)
+                yield summary.shown(definition, None, speed, None, std, 1, _known(speed, std))
 
     def _slope(self, walked: Walked) -> Metric:
         """m/s per minute, over lengths from turn to turn: the first and the last one hold a start and a stop."""
@@ -119,7 +126,8 @@ class SixMinuteTotals:
             because = NO_HEADING if not self._sees_heading else NO_STEP_LENGTHS if not self._sees_steps else None
             fewer = f"{len(lengths)} of at least 3 lengths walked from turn to turn"
             return summary.withheld(SIX_SLOPE, None, len(lengths), because or fewer)
-        return summary.shown(SIX_SLOPE, None, found[0], None, found[1], trend.count)
+        interval = of_mean(*found, trend.count - 2)
+        return summary.shown(SIX_SLOPE, None, found[0], None, found[1], trend.count, interval)
 
     def _turns(self, walked: Walked) -> list[Metric]:
         if not self._sees_heading:
@@ -159,4 +167,9 @@ class SixMinuteTotals:
 def _told(definition: Definition, distance: Distance | None, because: str, withhold: bool) -> Metric:
     if distance is None or withhold:
         return summary.withheld(definition, None, 0, because)
-    return summary.shown(definition, None, distance.value_m, None, distance.std_m, 1)
+    return summary.shown(definition, None, distance.value_m, None, distance.std_m, 1, _known(*distance))
+
+
+def _known(value: float, std: float) -> Interval:
+    """Of something that was measured once, with a known deviation."""
+    return of_mean(value, 0.0, 1, std)

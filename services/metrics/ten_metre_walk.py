@@ -19,6 +19,7 @@ from services.definitions.walking_tests import (
 )
 from services.flow.node import State
 from services.metrics import summary
+from services.metrics.intervals import of_mean
 from services.metrics.moments import Moments
 from services.metrics.parameters import MetricsParameters
 from services.metrics.phase_list import NO_STEP_LENGTHS, PhaseList, sees_step_lengths
@@ -83,8 +84,9 @@ class TenMetreTotals:
         spread = moments.spread()
         scatter = 0.0 if spread is None else float(spread) ** 2
         error = math.sqrt((scatter + float(variances.mean)) / moments.count)
-        told = None if spread is None else float(spread)
-        return summary.shown(definition, None, float(moments.mean), told, error or None, moments.count)
+        told, value, n = None if spread is None else float(spread), float(moments.mean), moments.count
+        interval = of_mean(value, math.sqrt(scatter / n), n - 1, math.sqrt(float(variances.mean) / n))
+        return summary.shown(definition, None, value, told, error or None, n, interval if error else None)
 
     def snapshot(self) -> State:
         """The phases."""

@@ -11,6 +11,10 @@ class WalkingTestMetricsParameters:
     """s by which a test's end may be missed: a recording that is stopped with the clock."""
     most_corridor_misfit: float = 0.15
     """share by which steps and a declared corridor may differ; beyond it turns were missed, or it was another one."""
+    most_length_misfit: float = 0.25
+    """share by which the steps of a length may differ from the median; else a turn was missed, or made on the way."""
+    most_time_misfit: float = 0.5
+    """the same of times, where steps have no length; people slow down."""
     scaled_step_share: float = 0.02
     """share of a way walked by steps that a corridor has scaled."""
     timed_rest_share: float = 0.15

@@ -1,0 +1,1 @@
+"""Walks for time and measured walks against what was truly walked."""
