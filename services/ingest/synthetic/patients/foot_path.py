@@ -21,12 +21,12 @@ FLAT_AFTER = 0.17
 FLAT_WITHIN_S = 0.3
 LONGEST_STANCE = 2.0
 """Times the swing after it, of which the heel's rise is a share: who stands still first raises no heel early."""
-MOST_HEEL_RISE = math.radians(140.0)
-"""Half of which is done at toe-off."""
+MOST_HEEL_RISE = math.radians(180.0)
+"""A third of which is done at toe-off."""
 MOST_CLEARING_M = 0.1
 TOES_UP_BY = 0.75
 """Share of the swing by which the foot is as it will land."""
-HEEL_RISES_ON, LATEST_HEEL_RISE = 0.95, 0.8
+HEEL_RISES_ON, LATEST_HEEL_RISE = 1.5, 1.0
 """How long a push lasts after toe-off: times that before it, but at most a share of the swing."""
 ANKLE_HEIGHT = -float(BALL_FROM_ANKLE[1])
 """m above the floor, of a flat foot."""
