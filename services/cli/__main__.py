@@ -11,9 +11,10 @@ from rich.table import Table
 from schemas.metrics import SessionMetrics
 from schemas.rhythm import KnownRhythm
 from schemas.session import WalkPath
-from schemas.vocabulary import ESTIMATORS, Task
+from services.cli.conditions import Conditioned, read_conditions
 from services.cli.console import err, out, told
 from services.cli.export import export
+from services.cli.options import Asked, Estimator, Rhythm, Source, Straight, Walkway
 from services.cli.reprocess.command import reprocess
 from services.cli.send_skeletons import send_skeletons
 from services.cli.tune import tune
@@ -24,46 +25,6 @@ app = typer.Typer(
     add_completion=False,
     help="Joint angles, gait events and honest progress from body-worn IMUs. Research software, not a medical device.",
 )
-
-Source = Annotated[
-    str,
-    typer.Argument(
-        metavar="PATH",
-        help="A folder with a recording.toml, an .mcap file of Ambula, the name of a shipped manifest"
-        " (neura_s02_walk), synthetic:walk?speed=1.1&seed=3, synthetic:walk?patient=hemiparetic&speed=0.4,"
-        " synthetic:march?metronome=70&seed=3,"
-        " synthetic:tug?seed=3, synthetic:knee?exercise=1&seed=3 or synthetic:squat?seed=3;"
-        " or a Kinect: device:kinect?port=7788",
-    ),
-]
-Estimator = Annotated[
-    str | None,
-    typer.Option(help=f"one of {', '.join(ESTIMATORS)}; default as the recording says"),
-]
-Straight = Annotated[
-    bool | None,
-    typer.Option(
-        "--straight/--turning",
-        help="straight: treadmill, in place, corridor without a turn; default: as the recording says, else turning",
-        show_default=False,
-    ),
-]
-Asked = Annotated[
-    Task | None,
-    typer.Option(help="what the person does; default: as the recording says, else walk", show_default=False),
-]
-Walkway = Annotated[
-    float | None,
-    typer.Option(metavar="METRES", help="from the chair to the turning point of a timed up and go", show_default=False),
-]
-Rhythm = Annotated[
-    Path | None,
-    typer.Option(
-        metavar="PATH",
-        help="what was learned then: a JSON file, the folder of an archived session or of ambula run",
-        show_default=False,
-    ),
-]
 
 
 def _version(wanted: bool) -> None:
@@ -102,6 +63,7 @@ def replay(
     straight: Straight = None,
     task: Asked = None,
     walkway: Walkway = None,
+    conditions: Conditioned = None,
     previous_trial: Rhythm = None,
     previous_visit: Rhythm = None,
     exemplar: Rhythm = None,
@@ -118,7 +80,8 @@ def replay(
     ):
         pace = None if speed == "max" else _positive(speed)
         known = _known(previous_trial, previous_visit, exemplar)
-        choices = Choices(estimator, _walk_path(straight), known, task, walkway)
+        said = read_conditions(conditions)
+        choices = Choices(estimator, _walk_path(straight), known, task, walkway, said)
         description = live.start_session(bus, _absolute(path), pace, choices)
         err.print(f"session {description.session}: {description.title}")
         with Progress(
@@ -155,6 +118,7 @@ def run(
     straight: Straight = None,
     task: Asked = None,
     walkway: Walkway = None,
+    conditions: Conditioned = None,
     previous_trial: Rhythm = None,
     previous_visit: Rhythm = None,
     exemplar: Rhythm = None,
@@ -164,9 +128,10 @@ def run(
     from services.cli.run import run as run_source
     from services.ingest.errors import SourceError
 
-    with told(SourceError, NoRhythm, OSError):
+    with told(SourceError, NoRhythm, OSError, ValueError):
         known = _known(previous_trial, previous_visit, exemplar)
-        run_source(path, folder, err, Choices(estimator, _walk_path(straight), known, task, walkway))
+        said = read_conditions(conditions)
+        run_source(path, folder, err, Choices(estimator, _walk_path(straight), known, task, walkway, said))
     out.print(f"written: {folder}/joint_angles.csv, events.csv, strides.csv, metrics.json")
 
 

@@ -101,6 +101,7 @@ def _header(source: Source, chain: Chain) -> dict[str, Any]:
         "walk_path": description.walk_path,
         "task": description.task,
         "walkway_m": description.walkway_m,
+        "conditions": description.conditions.model_dump(mode="json", exclude_none=True),
         "known_rhythms": [{"kind": known.kind, "name": known.name} for known in description.known_rhythms],
         "definitions": STRIDES_AND_STEPS,
         "rejections": [rejection.model_dump(mode="json") for rejection in rejections],
