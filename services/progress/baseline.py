@@ -5,17 +5,14 @@ from collections.abc import Iterator, Mapping, Sequence
 from pydantic import Field
 
 from schemas.conditions import SpeedInstruction
-from schemas.metrics import TrustGrade
 from schemas.payload import Payload
 from schemas.population import Population
 from schemas.vocabulary import Task
 from services.progress.likeness import differences, unsaid
 from services.progress.measures import is_followed
 from services.progress.thresholds import TABLE_VERSION, THRESHOLDS, Occasion, Threshold, in_band, usable
+from services.progress.trusted import is_trusted
 from services.progress.visits import Trial, Visit, numbers_of_sessions
-
-ENOUGH = (TrustGrade.GOOD, TrustGrade.FAIR)
-"""Grades that a verdict may rest on."""
 
 _SPEED_FROM = ((Task.TEN_METRE_WALK, "ten_metre_walk_speed"), (Task.TEN_METRE_WALK, "walking_speed"),
                (Task.WALK, "walking_speed"))  # fmt: skip
@@ -69,8 +66,7 @@ def is_usable(trial: Trial) -> bool:
     if trial.metrics is None or unsaid(trial):
         return False
     return any(
-        is_followed(metric.name) and metric.value is not None and metric.grade in ENOUGH
-        for metric in trial.metrics.metrics
+        is_followed(metric.name) and metric.value is not None and is_trusted(metric) for metric in trial.metrics.metrics
     )
 
 
@@ -159,9 +155,8 @@ def comfortable_speed(visit: Visit) -> float | None:
             for trial in visit.of(task)
             if trial.conditions.speed_instruction is SpeedInstruction.COMFORTABLE
         ]
-        speeds = [
-            each.value for each in metrics if each is not None and each.grade in ENOUGH and each.value is not None
-        ]
+        trusted = [each for each in metrics if each is not None and is_trusted(each)]
+        speeds = [each.value for each in trusted if each.value is not None]
         if speeds:
             return sum(speeds) / len(speeds)
     return None

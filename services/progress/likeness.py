@@ -17,6 +17,8 @@ are no walking need only the orthosis."""
 
 _OTHERWISE = ("orthosis",)
 _NEEDS_WALKWAY = (Task.TIMED_UP_AND_GO, Task.SIX_MINUTE_WALK)
+ALIKE_LENGTHS = 0.1
+"""Relative: a tape finds a leg's length again within this; a larger difference is another body's (proposal)."""
 _NOT_HOW = ("paretic_side",)
 """Whose side is the paretic one is no way of doing a test."""
 
@@ -36,15 +38,27 @@ def differences(now: Trial, baseline: Trial, unit: str) -> list[Rule]:
     What measured and what computed count as well: estimator, sensors and their places, software; of angles the datum.
     """
     pairs = [(name, getattr(now.conditions, name), getattr(baseline.conditions, name)) for name in _HOW]
-    pairs += [(name, getattr(now, name), getattr(baseline, name)) for name in ("walkway_m", "walk_path", "estimator")]
+    pairs += [
+        (name, getattr(now, name), getattr(baseline, name))
+        for name in ("walkway_m", "walk_path", "estimator", "lengths_from")
+    ]
     pairs.append(("sensors", " ".join(now.sensors), " ".join(baseline.sensors)))
     pairs.append(("software", _software(now), _software(baseline)))
+    if _lengths_differ(now, baseline):
+        pairs.append(("leg_length_m", now.leg_length_m, baseline.leg_length_m))
     if unit == "rad":
         pairs.append(("datum", now.datum, baseline.datum))
     return [rule(RuleCode.DIFFERENCE, name, mine, theirs) for name, mine, theirs in pairs if mine != theirs]
 
 
+_WITH = ("walkway_m", "walk_path", "estimator", "lengths_from")
 _HOW = tuple(name for name in Conditions.model_fields if name not in _NOT_HOW)
+
+
+def _lengths_differ(now: Trial, baseline: Trial) -> bool:
+    if now.leg_length_m is None or baseline.leg_length_m is None:
+        return now.leg_length_m is not baseline.leg_length_m
+    return abs(now.leg_length_m - baseline.leg_length_m) > ALIKE_LENGTHS * baseline.leg_length_m
 
 
 def _software(trial: Trial) -> str | None:

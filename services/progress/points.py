@@ -1,14 +1,17 @@
 """One measure of one session, and whether it may be compared."""
 
+import math
 from dataclasses import dataclass
 from datetime import date
 
 from schemas.metrics import Metric, TrustGrade
-from services.progress.baseline import ENOUGH
-from services.progress.estimates import Z95, Estimate
+from services.definitions.definition import Basis
+from services.definitions.table import BY_NAME
+from services.progress.estimates import REPEATED_SHARE, Z95, Estimate
 from services.progress.likeness import differences, unsaid
 from services.progress.measures import Measure
 from services.progress.rules import Rule, RuleCode, rule
+from services.progress.trusted import is_trusted
 from services.progress.visits import Trial, Visit
 
 
@@ -27,6 +30,8 @@ class Point:
     software: str
     comparable: bool
     rules: list[Rule]
+    repeated: float
+    """Of half the interval, what errs alike at every like visit."""
 
     @property
     def estimate(self) -> Estimate:
@@ -34,7 +39,7 @@ class Point:
         assert self.value is not None
         assert self.low is not None
         assert self.high is not None
-        return Estimate(self.value, self.low, self.high)
+        return Estimate(self.value, self.low, self.high, self.repeated)
 
 
 def point(visit: Visit, trial: Trial, measure: Measure, metric: Metric, baseline: Trial | None) -> Point:
@@ -56,6 +61,7 @@ def point(visit: Visit, trial: Trial, measure: Measure, metric: Metric, baseline
         software=trial.metrics.software,
         comparable=not rules,
         rules=rules,
+        repeated=0.0 if low is None or high is None else repeated(metric, (high - low) / 2),
     )
 
 
@@ -68,11 +74,22 @@ def interval(metric: Metric) -> tuple[float | None, float | None]:
     return metric.value - Z95 * metric.mean_std, metric.value + Z95 * metric.mean_std
 
 
+def repeated(metric: Metric, half: float) -> float:
+    """Of half the interval, what the strides share and like visits repeat: of what rests on the body's lengths alone.
+
+    Strides share all of half^2 that their standard error does not explain.
+    """
+    definition = BY_NAME.get(metric.name)
+    if definition is None or definition.basis is not Basis.LENGTHS or metric.mean_std is None:
+        return 0.0
+    return math.sqrt(REPEATED_SHARE * max(0.0, half**2 - (Z95 * metric.mean_std) ** 2))
+
+
 def _of_itself(metric: Metric, measure: Measure, low: float | None) -> list[Rule]:
     if metric.value is None:
         return [rule(RuleCode.NO_VALUE, metric.withheld_because)]
     rules = []
-    if metric.grade not in ENOUGH:
+    if not is_trusted(metric):
         rules.append(rule(RuleCode.GRADE_TOO_LOW, metric.grade))
     if metric.strides < measure.least_strides:
         rules.append(rule(RuleCode.TOO_FEW_STRIDES, metric.strides, measure.least_strides))

@@ -58,9 +58,9 @@ class RuleCode(StrEnum):
 
 
 RULES: Mapping[RuleCode, tuple[str, ...]] = {
-    RuleCode.CHANGE_BEYOND_MDC: ("change", "low", "high", "mdc"),
-    RuleCode.CHANGE_WITHIN_MDC: ("change", "low", "high", "mdc"),
-    RuleCode.INTERVAL_REACHES_MDC: ("change", "low", "high", "mdc"),
+    RuleCode.CHANGE_BEYOND_MDC: ("change", "low", "high", "mdc", "limit"),
+    RuleCode.CHANGE_WITHIN_MDC: ("change", "low", "high", "mdc", "limit"),
+    RuleCode.INTERVAL_REACHES_MDC: ("change", "low", "high", "mdc", "limit"),
     RuleCode.OWN_ERROR_NOT_SMALLER: ("half_interval", "mdc"),
     RuleCode.BELOW_SMALLEST_CHANGE: ("change", "smallest"),
     RuleCode.NO_BASELINE: (),
@@ -84,7 +84,8 @@ RULES: Mapping[RuleCode, tuple[str, ...]] = {
     RuleCode.SIDES_NOT_CLOSER: ("distance_change", "low", "high"),
 }
 """Parameters of each rule, in SI, in the order in which a sentence may take them. `change`, `low`, `high`, `mdc`,
-`half_interval` and `smallest` are in the unit of the measure; `speed_change` in m/s, `distance_change` in rad."""
+`limit` (the MDC and our own error together), `half_interval` and `smallest` are in the unit of the measure;
+`speed_change` in m/s, `distance_change` in rad."""
 
 
 Parameter = float | int | str | None

@@ -31,6 +31,8 @@ class VisitValue:
     verdict: Verdict
     direction: Direction | None
     rules: list[Rule]
+    repeated: float
+    """Of half the interval, what errs alike at every like visit."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -124,7 +126,7 @@ def series(frame: Frame, measure: Measure, side: str | None, unit: str, points: 
 
 
 def _estimate(visit: VisitValue) -> Estimate:
-    return Estimate(visit.value, visit.low, visit.high)
+    return Estimate(visit.value, visit.low, visit.high, visit.repeated)
 
 
 def _blocked(frame: Frame, measure: Measure, mdc: FrozenThreshold | None, occasion: Occasion) -> list[Rule]:
@@ -157,7 +159,8 @@ def _value(
     mean = over_trials([point.estimate for point in points])
     sessions = [point.session for point in points]
     first = points[0]
-    return VisitValue(first.visit, first.day, sessions, mean.value, mean.low, mean.high, since, verdict, way, rules)
+    how = since, verdict, way, rules
+    return VisitValue(first.visit, first.day, sessions, mean.value, mean.low, mean.high, *how, mean.repeated)
 
 
 def _later(

@@ -25,7 +25,7 @@ class Trend:
 
 
 def trend(days: Sequence[float], values: Sequence[Estimate]) -> Trend | None:
-    """Weighted least squares, weights w = 1 / s^2 of the visits; null below three visits or where all are on one day.
+    """Weighted least squares, weights w = 1 / s^2 of the visits' own errors; null below three visits or on one day.
 
     slope = sum w (t - T)(x - X) / S, S = sum w (t - T)^2, T and X the weighted means. Its variance is max(1, chi^2 /
     (n - 2)) / S: visits that scatter more than their intervals say widen it. Interval by Student's t with n - 2.
@@ -33,9 +33,9 @@ def trend(days: Sequence[float], values: Sequence[Estimate]) -> Trend | None:
     count = len(values)
     if count < LEAST_VISITS or max(days) == min(days):
         return None
-    widest = max(each.half for each in values)
+    widest = max(each.own for each in values)
     # A visit without any stated error would take the whole weight.
-    weights = [(Z95 / max(each.half, 1e-3 * widest, 1e-12)) ** 2 for each in values]
+    weights = [(Z95 / max(each.own, 1e-3 * widest, 1e-12)) ** 2 for each in values]
     total = sum(weights)
     middle = sum(w * day for w, day in zip(weights, days, strict=True)) / total
     mean = sum(w * each.value for w, each in zip(weights, values, strict=True)) / total

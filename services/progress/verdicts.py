@@ -1,5 +1,7 @@
 """Whether a change is real: the statistical interval of both visits against the published detectable change."""
 
+import math
+
 from services.progress.estimates import Estimate
 from services.progress.measures import Better, Measure
 from services.progress.rules import Direction, Rule, RuleCode, Verdict, rule
@@ -8,14 +10,16 @@ from services.progress.rules import Direction, Rule, RuleCode, Verdict, rule
 def judge(measure: Measure, change: Estimate, mdc: float) -> tuple[Verdict, list[Rule]]:
     """Rules 6.3.4, 6.3.7 and 6.3.8 of the clinical conventions, with d the change, h half its 95 % interval, m the MDC.
 
-    h >= m: cannot tell, for our own error is not shown to be smaller than what is to be detected. |d| - h > m: the
-    whole interval lies beyond the MDC, real change. |d| + h < m: the whole interval lies within, measurement error.
-    Else the interval reaches over the MDC and nobody can tell.
+    h >= m: cannot tell, for our own error is not shown to be smaller than what is to be detected.
+    |d| > sqrt(m^2 + h^2): real change. 95 % of unchanged people stay within m from day to day, and within h by our own
+    errors; both together are exceeded once in twenty times by somebody who has not changed.
+    |d| + h < m: measurement error, for the whole interval lies within the MDC. Else nobody can tell.
     """
-    numbers = (change.value, change.low, change.high, mdc)
+    limit = math.hypot(mdc, change.half)
+    numbers = (change.value, change.low, change.high, mdc, limit)
     if change.half >= mdc:
         return Verdict.CANNOT_TELL, [rule(RuleCode.OWN_ERROR_NOT_SMALLER, change.half, mdc)]
-    if abs(change.value) - change.half > mdc:
+    if abs(change.value) > limit:
         if measure.smallest_change is not None and abs(change.value) < measure.smallest_change:
             below = rule(RuleCode.BELOW_SMALLEST_CHANGE, change.value, measure.smallest_change)
             return Verdict.WITHIN_MEASUREMENT_ERROR, [below]

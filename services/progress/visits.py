@@ -26,6 +26,10 @@ class Trial:
     estimator: str
     sensors: tuple[str, ...]
     """What measured: segment and side of the segment of every sensor, kind of every camera; in order."""
+    leg_length_m: float | None
+    """Thigh and shank as they were declared; lengths walked are in proportion to it."""
+    lengths_from: str | None
+    """Measured, from stature, or of nobody in particular."""
     datum: str | None
     """What an angle of zero means; null where nothing was calibrated."""
     metrics: SessionMetrics | None

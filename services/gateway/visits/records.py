@@ -26,7 +26,7 @@ def visits_of(rows: list[SessionRow]) -> list[Visit]:
 def trial_of(row: SessionRow) -> Trial:
     """One session as progress takes it. One that never started is a walk of which nothing is known."""
     description = row.description or {}
-    metrics = stored_metrics(row)
+    metrics, body = stored_metrics(row), description.get("anthropometry")
     calibration = None if row.calibration is None else Calibration.model_validate(row.calibration.body)
     return Trial(
         session=row.id,
@@ -37,6 +37,8 @@ def trial_of(row: SessionRow) -> Trial:
         walk_path=description.get("walk_path"),
         estimator=row.estimator,
         sensors=_sensors(description),
+        leg_length_m=None if body is None else body["thigh_length_m"] + body["shank_length_m"],
+        lengths_from=None if body is None else body["source"],
         datum=None if calibration is None else calibration.datum,
         metrics=metrics if metrics is not None and metrics.final else None,
     )

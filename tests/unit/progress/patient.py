@@ -49,6 +49,8 @@ def trial(session, day, *metrics, hours=0.0, **changes) -> Trial:
         "walk_path": "turning",
         "estimator": "rhythmic_ekf",
         "sensors": ("pelvis:lateral", "shank_left:lateral", "shank_right:lateral"),
+        "leg_length_m": 0.81,
+        "lengths_from": "measured",
         "datum": "quiet standing",
         "metrics": results(*metrics),
     }

@@ -3,6 +3,7 @@ from dataclasses import replace
 import pytest
 
 from schemas.conditions import UNSAID
+from schemas.metrics import Doubt, DoubtKind
 from schemas.population import Population
 from schemas.vocabulary import Task
 from services.progress.baseline import freeze
@@ -84,6 +85,9 @@ def test_a_population_is_said_and_stays(make):
         ({"estimator": "ekf"}, "estimator"),
         ({"walk_path": "straight"}, "walk_path"),
         ({"walkway_m": 10.0}, "walkway_m"),
+        ({"leg_length_m": 0.9}, "leg_length_m"),
+        ({"leg_length_m": None}, "leg_length_m"),
+        ({"lengths_from": "default"}, "lengths_from"),
         ({"software": "ambula 0.2.0"}, "software"),
     ],
 )
@@ -138,6 +142,28 @@ def test_what_cannot_be_trusted_is_not_compared(make, changes, code):
     visits = in_visits([make.trial("a", 0, make.metric(0.5)), make.trial("b", 14, make.metric(0.9, **changes))])
     speed = make.judged(visits)
     assert (speed.verdict, codes(speed.rules)) == (Verdict.CANNOT_TELL, [code])
+
+
+def test_a_wide_interval_alone_forbids_nothing_for_that_of_the_change_is_judged(make):
+    def doubted(kind):
+        doubt = Doubt(kind=kind, value=2.4, limit=2.0, subject=None)
+        return make.metric(0.9, 0.12, mean_std=0.005, grade="poor", doubts=[doubt])
+
+    first = make.trial("a", 0, make.metric(0.5, 0.08, mean_std=0.005))
+    wide = make.judged(in_visits([first, make.trial("b", 14, doubted(DoubtKind.WIDE_INTERVAL))]))
+    assert wide.verdict is Verdict.REAL_CHANGE
+    # Nearly all of what is shared is repeated at the next visit, so the change is known better than either value.
+    assert wide.change.high - wide.change.value < 0.5 * (0.08**2 + 0.12**2) ** 0.5
+    lost = make.judged(in_visits([first, make.trial("b", 14, doubted(DoubtKind.LOSS))]))
+    assert codes(lost.rules) == [RuleCode.GRADE_TOO_LOW]
+
+
+def test_only_what_rests_on_lengths_repeats_its_error(make):
+    def of(session, day, value):
+        return make.trial(session, day, make.metric(value, 2.0, name="cadence", unit="steps/min", mean_std=0.1))
+
+    cadence = make.judged(in_visits([of("a", 0, 90.0), of("b", 14, 100.0)]), measure="cadence")
+    assert cadence.change.half == pytest.approx(2.0 * 2**0.5)
 
 
 def test_variability_needs_ten_strides(make):

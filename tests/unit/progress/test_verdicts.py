@@ -1,5 +1,6 @@
 import math
 
+import numpy as np
 import pytest
 
 from services.progress.estimates import Estimate, change, over_trials
@@ -19,7 +20,8 @@ def interval(value, half):
     [
         (0.14, 0.03, Verdict.REAL_CHANGE, RuleCode.CHANGE_BEYOND_MDC),
         (-0.14, 0.03, Verdict.REAL_CHANGE, RuleCode.CHANGE_BEYOND_MDC),
-        (0.12, 0.03, Verdict.CANNOT_TELL, RuleCode.INTERVAL_REACHES_MDC),
+        (0.105, 0.03, Verdict.REAL_CHANGE, RuleCode.CHANGE_BEYOND_MDC),
+        (0.104, 0.03, Verdict.CANNOT_TELL, RuleCode.INTERVAL_REACHES_MDC),
         (0.08, 0.03, Verdict.CANNOT_TELL, RuleCode.INTERVAL_REACHES_MDC),
         (0.06, 0.03, Verdict.WITHIN_MEASUREMENT_ERROR, RuleCode.CHANGE_WITHIN_MDC),
         (-0.06, 0.03, Verdict.WITHIN_MEASUREMENT_ERROR, RuleCode.CHANGE_WITHIN_MDC),
@@ -27,7 +29,7 @@ def interval(value, half):
         (0.5, 0.2, Verdict.CANNOT_TELL, RuleCode.OWN_ERROR_NOT_SMALLER),
     ],
 )
-def test_the_whole_interval_counts_against_the_threshold(value, half, verdict, code):
+def test_the_interval_counts_with_the_threshold(value, half, verdict, code):
     found, rules = judge(SPEED, interval(value, half), 0.1)
     assert found is verdict
     assert [rule.code for rule in rules] == [code]
@@ -62,6 +64,22 @@ def test_errors_of_both_visits_add_as_independent():
     both = change(interval(0.5, 0.03), interval(0.7, 0.04))
     assert both.value == pytest.approx(0.2)
     assert both.half == pytest.approx(0.05)
+
+
+def test_what_errs_alike_at_every_visit_drops_out_of_a_change_but_for_its_growth():
+    before, after = Estimate(0.5, 0.45, 0.55, repeated=0.04), Estimate(0.75, 0.675, 0.825, repeated=0.06)
+    assert before.own == pytest.approx(0.03)
+    assert change(before, after).half == pytest.approx(math.hypot(0.03, 0.045, 0.02))
+    assert over_trials([before] * 4).repeated == pytest.approx(0.04)
+
+
+def test_unchanged_people_exceed_both_errors_together_once_in_twenty_times():
+    rng = np.random.default_rng(3)
+    mdc, half, said = 0.15, 0.06, 0
+    for from_day, from_us in rng.standard_normal((4000, 2)):
+        change = from_day * mdc / 1.96 + from_us * half / 1.96
+        said += judge(SPEED, interval(change, half), mdc)[0] is Verdict.REAL_CHANGE
+    assert 0.04 <= said / 4000 <= 0.06
 
 
 def test_trials_share_their_own_error_and_average_what_they_scatter_beyond_it():
