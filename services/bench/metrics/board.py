@@ -6,7 +6,7 @@ from typing import NamedTuple
 
 from rich.progress import Progress
 
-from services.bench.metrics import coverage, exports, patients
+from services.bench.metrics import coverage, exports, fhir, patients
 from services.bench.report import Section, report_text, write_report
 from services.bench.scoreboard import Row, Scoreboard
 from services.ingest.errors import MissingFile
@@ -26,6 +26,7 @@ SECTIONS: dict[str, Part] = {
     "patients": Part(patients.patients_section, patients.STEPS),
     "coverage": Part(coverage.coverage_section, coverage.STEPS),
     "exports": Part(exports.run, exports.STEPS),
+    "fhir": Part(fhir.fhir_section, fhir.STEPS),
 }
 """By the name that `ambula bench metrics NAME` takes, in the order of the report."""
 HOW_TO_READ = """What a physiotherapist is told, against what is known. Everything comes from `ambula bench metrics`;
