@@ -1,9 +1,11 @@
-"""Pictures of the pages with the whole stack behind them: `python -m services.cli.screenshots [FOLDER]`."""
+"""Pictures of pages and reports, with the whole stack behind them: `python -m services.cli.screenshots [FOLDER]`."""
 
+import json
 import socket
 import sys
 import tempfile
 import time
+import urllib.request
 from collections.abc import Callable
 from dataclasses import dataclass
 from pathlib import Path
@@ -15,15 +17,15 @@ from selenium.webdriver.support.ui import WebDriverWait
 from services.bus.connection import Bus
 from services.bus.settings import BusSettings
 from services.cli import browser as browsers
-from services.cli import live
+from services.cli import live, picture_visits
 from services.cli.console import err, out
 from services.cli.supervisor import Supervisor
 from services.ingest.errors import SourceError
 from services.ingest.source import open_source
+from services.report.content import Report
+from services.report.press import press
 
 SERVICES = ["archive", "estimation", "segmentation", "metrics", "gateway", "ingest"]
-SHORT = "synthetic:walk?speed=1.2&seed=4&duration=40"
-"""Over soon, so that there is a report to show."""
 LONG = ("synthetic:walk?speed=1.15&seed=1&duration=300", "synthetic:walk?speed=0.7&asymmetry=0.25&seed=2&duration=300")
 RECORDED = "neura_s02_walk"
 KNEE = "synthetic:walk?worn=1&speed=1.1&seed=4&duration=300"
@@ -31,7 +33,10 @@ EXERCISE = "synthetic:knee?seed=2&duration=300"
 TIMED = "synthetic:tug?attempts=3&stroll=8&seed=4"
 SQUATS = "synthetic:squat?person=2&repetitions=12"
 BODY = "synthetic:squat?person=2&repetitions=100"
-PATIENCE_S = 120
+SIX_MINUTES = "synthetic:six_minutes?rests=1&seed=6"
+PATIENCE_S = 300
+HEIGHT = 768
+PAPER_PIXELS_PER_INCH = 100
 
 
 def main() -> int:
@@ -48,23 +53,37 @@ def main() -> int:
         settings = BusSettings(router=f"tcp/127.0.0.1:{_free_port()}")
         with Supervisor(SERVICES, settings, environment=environment) as stack, browsers.open_browser() as page:
             stack.wait_until_ready(timeout_s=180)
-            _take_all(page, f"http://127.0.0.1:{port}", settings, folder)
+            camera = _Camera(page, f"http://127.0.0.1:{port}", folder)
+            _take_patient(camera, Path(data))
+            _take_sessions(camera, settings)
     return 0
 
 
-def _take_all(page: Chrome, url: str, settings: BusSettings, folder: Path) -> None:
-    camera = _Camera(page, url, folder)
+def _take_patient(camera: "_Camera", data: Path) -> None:
+    patient = picture_visits.visits(camera.url, data, PATIENCE_S)
+    last = patient.sessions[-1]
+    progress = f"/#/patients/{patient.code}"
+    camera.take("progress", progress, lambda: camera.shown(".verdict", "real change"), height=1110)
+    camera.take("report", f"/#/sessions/{last}", lambda: camera.shown(".sheet", "m/s"), height=1240)
+    with urllib.request.urlopen(f"{camera.url}/v1/sessions/{last}/report?language=en", timeout=60) as answer:
+        report = Report.model_validate(json.load(answer))
+    for number, picture in enumerate(press().pictures(report, PAPER_PIXELS_PER_INCH), start=1):
+        camera.keep(f"report_page_{number}", picture)
+
+
+def _take_sessions(camera: "_Camera", settings: BusSettings) -> None:
     live_now, finished, shown = camera.is_live, camera.is_finished, camera.shown
     with Bus.open(settings, "screenshots") as bus:
-        walk, timed, squats = (live.start_session(bus, spec, None).session for spec in (SHORT, TIMED, SQUATS))
-        now = (LONG[0], KNEE, EXERCISE, BODY, *LONG[1:], *_recorded())
-        lower_body, knee, exercise, body, *_ = [live.start_session(bus, spec, 1.0).session for spec in now]
+        timed, squats = (live.start_session(bus, spec, None).session for spec in (TIMED, SQUATS))
+        now = (LONG[0], KNEE, EXERCISE, BODY, SIX_MINUTES, *LONG[1:], *_recorded())
+        lower_body, knee, exercise, body, corridor, *_ = [live.start_session(bus, spec, 1.0).session for spec in now]
     camera.take("live_body", f"/#/sessions/{body}", lambda: live_now() and shown(".counter dd", "/min"))
     camera.take("live_knee", f"/#/sessions/{knee}", lambda: live_now() and shown(".knee-label", "°"))
     camera.take("live_exercise", f"/#/sessions/{exercise}", lambda: live_now() and shown(".counter dd", "/min"))
     camera.take("live", f"/#/sessions/{lower_body}", lambda: live_now() and not shown(".numbers td", "–"))
+    camera.take("live_six_minutes", f"/#/sessions/{corridor}", lambda: live_now() and shown(".walk-strip dd", " m"))
     camera.take("sessions", "/", lambda: shown(".card .chip", "Live"))
-    camera.take("report", f"/#/sessions/{walk}", finished)
+    camera.remember("report-level", "measured")
     camera.take("report_timed", f"/#/sessions/{timed}", lambda: finished() and shown("th", "Walk back"))
     camera.take("report_body", f"/#/sessions/{squats}", lambda: finished() and shown("th", "Knee flexion range"))
     camera.take("system", "/#/system", lambda: shown("tbody", "imu/"))
@@ -77,14 +96,25 @@ class _Camera:
     url: str
     folder: Path
 
-    def take(self, name: str, path: str, ready: Callable[[], bool]) -> None:
+    def take(self, name: str, path: str, ready: Callable[[], bool], height: int = HEIGHT) -> None:
+        self.page.execute_cdp_cmd(
+            "Emulation.setDeviceMetricsOverride",
+            {"width": 1366, "height": height, "deviceScaleFactor": 1, "mobile": False},
+        )
         self.page.get("about:blank")
         self.page.get(self.url + path)
         WebDriverWait(self.page, PATIENCE_S).until(lambda _: ready(), name)
         time.sleep(9.0 if name.startswith("live") else 1.5)
         WebDriverWait(self.page, PATIENCE_S).until(lambda _: ready(), f"{name}, still")
-        self.page.save_screenshot(str(self.folder / f"{name}.png"))
-        out.print(f"  {self.folder / name}.png")
+        self.keep(name, self.page.get_screenshot_as_png())
+
+    def keep(self, name: str, picture: bytes) -> None:
+        path = self.folder / f"{name}.png"
+        path.write_bytes(picture)
+        out.print(f"  {path}  {len(picture) // 1000} kB")
+
+    def remember(self, name: str, value: str) -> None:
+        self.page.execute_script(f"localStorage.setItem('ambula.{name}', '{value}')")
 
     def shown(self, selector: str, text: str) -> bool:
         return any(text in each.text for each in self.page.find_elements(By.CSS_SELECTOR, selector))

@@ -5,9 +5,12 @@ from pathlib import Path
 from typing import Any
 
 import pytest
+from selenium.webdriver import Chrome
 
 from services.bus.router import Router, choose_endpoint, open_router
 from services.bus.settings import BusSettings
+from services.cli import browser as browsers
+from tests.system import pages
 from tests.system.stage import Processes
 
 
@@ -50,3 +53,24 @@ def processes(settings: BusSettings, tmp_path: Path) -> Iterator[Processes]:
     processes = Processes(settings, tmp_path)
     yield processes
     processes.close()
+
+
+@pytest.fixture(scope="module")
+def floor(tmp_path_factory: pytest.TempPathFactory) -> Iterator[pages.Site]:
+    """A running floor with every service."""
+    with pages.open_site(tmp_path_factory.mktemp("recordings")) as site:
+        yield site
+
+
+@pytest.fixture
+def site(floor: pages.Site) -> Iterator[pages.Site]:
+    """A running floor without sessions; those a test leaves behind would slow down the next."""
+    yield floor
+    pages.end_all(floor.url)
+
+
+@pytest.fixture
+def page() -> Iterator[Chrome]:
+    """A browser."""
+    with browsers.open_browser() as page:
+        yield page

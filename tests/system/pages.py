@@ -6,7 +6,7 @@ import os
 import socket
 import urllib.error
 import urllib.request
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass
 from pathlib import Path
@@ -60,8 +60,8 @@ class Site:
 
 
 @contextmanager
-def open_site(recordings: Path) -> Iterator[Site]:
-    """All services on free ports."""
+def open_site(recordings: Path, services: Sequence[str] = SERVICES) -> Iterator[Site]:
+    """Services on free ports, all of them if no others are named."""
     port = free_port()
     environment = {
         "AMBULA_HTTP_HOST": "127.0.0.1",
@@ -70,7 +70,7 @@ def open_site(recordings: Path) -> Iterator[Site]:
         "AMBULA_DATABASE": "",
     }
     settings = BusSettings(router=f"tcp/127.0.0.1:{free_port()}")
-    with Supervisor(SERVICES, settings, environment=environment) as supervisor:
+    with Supervisor(services, settings, environment=environment) as supervisor:
         supervisor.wait_until_ready(timeout_s=180)
         yield Site(f"http://127.0.0.1:{port}", supervisor)
 
@@ -125,6 +125,13 @@ def start(page: Chrome, url: str, kind: str = "Walk, comfortable speed", speed: 
     choose_source(page, kind)
     Select(page.find_element(By.ID, "speed")).select_by_visible_text(speed)
     confirm(page)
+
+
+def read(page: Chrome, choice: str) -> None:
+    """Choose a reading level or a language of a report by its words."""
+    option = f"//fieldset//label[normalize-space()='{choice}']"
+    wait(page, lambda: page.find_elements(By.XPATH, option), f"{choice} can be chosen")
+    page.find_element(By.XPATH, option).click()
 
 
 def keep(page: Chrome, name: str) -> None:

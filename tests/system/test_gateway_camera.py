@@ -1,6 +1,5 @@
 """A person at the page of somebody before a depth camera: real services, synthetic exercises, a real browser."""
 
-import pytest
 from selenium.webdriver import Chrome
 from selenium.webdriver.common.by import By
 from selenium.webdriver.support.ui import Select
@@ -12,31 +11,12 @@ from tests.system.pages import begin, colours, keep, live, seen, shown, text, wa
 pytestmark = pages.NEEDED
 
 
-@pytest.fixture(scope="module")
-def floor(tmp_path_factory):
-    with pages.open_site(tmp_path_factory.mktemp("recordings")) as site:
-        yield site
-
-
-@pytest.fixture
-def site(floor):
-    """The address of a running floor without sessions."""
-    yield floor
-    pages.end_all(floor.url)
-
-
 def reasons(page) -> str:
     unseen = page.find_elements(By.CSS_SELECTOR, ".angles td.unseen-angle")
     return " ".join(each.get_attribute("title") or "" for each in unseen)
 
 
 SQUATS = "synthetic:squat?person=2&noise=0.3&repetitions=200"
-
-
-@pytest.fixture
-def page():
-    with browsers.open_browser() as page:
-        yield page
 
 
 def test_squats_before_a_camera_are_seen_counted_and_reported_on_both_sides(site, page):
@@ -57,13 +37,15 @@ def test_squats_before_a_camera_are_seen_counted_and_reported_on_both_sides(site
 
     page.find_element(By.CSS_SELECTOR, "button.danger").click()
     wait(page, lambda: text(page, ".session-head .chip") == "Finished", "the session ends")
+    pages.read(page, "Measurements and files")
     bars = "section[aria-label=Repetitions] svg rect"
     wait(page, lambda: len(page.find_elements(By.CSS_SELECTOR, bars)) >= 3, "the repetitions are drawn")
     rows = page.find_elements(By.CSS_SELECTOR, "section[aria-label=Repetitions] tbody tr")
     assert len(rows) == len(page.find_elements(By.CSS_SELECTOR, bars))
-    wait(page, lambda: "Hip flexion range" in text(page, "section[aria-label=Exercise]"), "the numbers")
-    assert shown(page, "section[aria-label=Exercise] thead th") == ["", "Left", "Right", "Whole body"]
-    assert shown(page, "section[aria-label=Metrics]") == []
+    numbers = "section[aria-label='Every number']"
+    wait(page, lambda: "Hip flexion range" in text(page, numbers), "the numbers")
+    assert shown(page, f"{numbers} thead th") == ["Number", "Left", "Right", "Whole body"]
+    assert shown(page, ".mean-curves") == []
     keep(page, "squat-report")
     assert browsers.complaints(page) == []
 

@@ -5,10 +5,10 @@ import { test } from "node:test";
 const sources = new URL("../../../services/gateway/web/src/", import.meta.url);
 const { figureOf, headingOf, between, kneeFan, rotate } = await import(new URL("figure.js", sources));
 const { Stage } = await import(new URL("stage.js", sources));
-const { byTrouble, connectionOf, jointName, lastData, metricGroup, metricName, segmentName, stateOf } = await import(
+const { byTrouble, connectionOf, jointName, lastData, metricName, segmentName, stateOf } = await import(
   new URL("words.js", sources)
 );
-const { misplacedText, qualityText } = await import(new URL("words.js", sources));
+const { misplacedText } = await import(new URL("words.js", sources));
 const { bytes, clock, degrees, number, shown } = await import(new URL("units.js", sources));
 const { kneesOf } = await import(new URL("worn.js", sources));
 const { measuresOf } = await import(new URL("repetition_counter.js", sources));
@@ -168,20 +168,6 @@ test("what is worn otherwise than declared is said in plain words", () => {
   assert.equal(misplacedText(undefined), "");
 });
 
-test("the quality line says what the numbers rest on", () => {
-  const counts = (name, value) => ({ name, side: "left", value });
-  assert.equal(
-    qualityText([counts("strides_counted", 12), counts("strides_rejected", 2)], { datum: "quiet standing" }),
-    "Quality: 12 strides count, 2 left out  ·  zero is quiet standing",
-  );
-  const exercise = { datum: null, task: "knee_flexion" };
-  assert.equal(
-    qualityText([counts("repetitions_counted", 8), counts("strides_counted", 5)], exercise),
-    "Quality: 8 repetitions count",
-  );
-  assert.equal(qualityText([counts("strides_counted", 0)], { datum: null }), "");
-});
-
 test("only what the sensors can tell is shown", () => {
   const worn = (...segments) => segments.map((segment) => ({ segment }));
   assert.deepEqual(kneesOf(worn("thigh_left", "shank_left")), ["left"]);
@@ -258,16 +244,10 @@ test("names are written for readers", () => {
   assert.equal(segmentName("shank_left"), "Left shank");
   assert.equal(segmentName("pelvis"), "Pelvis");
   assert.deepEqual(jointName("knee_flexion_right"), ["Knee flexion", "right"]);
-  assert.equal(metricName("step_length_ratio_larger_to_smaller"), "Step length");
-  assert.equal(metricGroup({ name: "stride_time_cv", side: null }), "variability");
-  assert.equal(metricGroup({ name: "stride_time_sd", side: null }), null);
-  assert.equal(metricGroup({ name: "stance_fraction", side: "left" }), "sides");
-  assert.equal(metricGroup({ name: "rhythm_side_distance", side: null }), "legs");
-  assert.equal(metricGroup({ name: "rhythm_distance_exemplar", side: "left" }), "sides");
-  assert.equal(metricGroup({ name: "repetition_range", side: "left" }), "exercise");
-  assert.equal(metricGroup({ name: "repetition_range_sd", side: "left" }), null);
-  assert.equal(metricGroup({ name: "tug_time", side: null }), "headlines");
-  assert.equal(metricGroup({ name: "tug_turn_time", side: null }), "timed");
+  assert.equal(metricName("step_length_ratio_larger_to_smaller"), "Step length, larger / smaller side");
+  assert.equal(metricName("stance_time_ratio_paretic_to_non_paretic"), "Stance time, paretic / non-paretic");
+  assert.equal(metricName("stride_time_cv"), "Stride time, variation");
+  assert.equal(metricName("double_support_fraction"), "Double support");
   assert.equal(metricName("tug_time"), "Timed up and go");
   assert.equal(lastData(0.21), "last data 0.2 s ago");
 });

@@ -10,6 +10,8 @@ const { byMeasure, lineOf, notAlike, treatmentMarks } = await load("progress_ser
 const { spanOf } = await load("progress_chart.js");
 const { digitsOf } = await load("drawing.js");
 const { GRADES, doubtWords } = await load("trust_words.js");
+const { possible } = await load("files_panel.js");
+const { columnOf } = await load("report_document.js");
 const { isSeen, spreadWords } = await load("numbers_table.js");
 
 const rulesFile = new URL("../../../services/progress/rules.py", import.meta.url);
@@ -63,10 +65,10 @@ test("every rule, verdict, word and treatment of the services has a sentence her
 });
 
 test("a verdict's rule is said with the interval and the threshold, in the reader's unit", () => {
-  const numbers = { change: 0.21, low: 0.18, high: 0.24, mdc: 0.15 };
+  const numbers = { change: 0.21, low: 0.18, high: 0.24, mdc: 0.15, limit: 0.153 };
   assert.equal(
     ruleSentence(rule("change_beyond_mdc", numbers), speed),
-    "Change +0.21 m/s (95 % interval +0.18 m/s to +0.24 m/s): wholly beyond the MDC of 0.15 m/s.",
+    "Change +0.21 m/s (95 % interval +0.18 m/s to +0.24 m/s): larger than the MDC of 0.15 m/s and our own error together (0.15 m/s).",
   );
   const knee = sayer("rad", "knee_flexion_range");
   const below = ruleSentence(rule("below_smallest_change", { change: -0.05, smallest: Math.PI / 30 }), knee);
@@ -176,6 +178,18 @@ test("every doubt of the services has words here", () => {
   assert.ok(kinds.length > 10);
   const words = kinds.map((kind) => doubtWords({ doubts: [{ kind, subject: null }], withheld_because: null }));
   assert.equal(new Set(words).size, kinds.length);
+});
+
+test("formats that cannot be had are named once per reason", () => {
+  const format = (name, reason = null) => ({ format: name, available: reason === null, reason });
+  const { had, not } = possible([format("a.csv"), format("b.c3d", "no recording"), format("c.mot", "no recording")]);
+  assert.deepEqual(had.map((each) => each.format), ["a.csv"]);
+  assert.deepEqual(not, [["no recording", ["b.c3d", "c.mot"]]]);
+});
+
+test("a value of the whole body takes the columns of both sides", () => {
+  const cells = [{ span: 2 }, { span: 1 }, { span: 1 }];
+  assert.deepEqual([columnOf(cells, 0), columnOf(cells, 1), columnOf(cells, 2)], [1, 3, 4]);
 });
 
 test("a number is shown with its 95 % interval, else with its standard deviation", () => {

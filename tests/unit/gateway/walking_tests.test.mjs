@@ -7,6 +7,8 @@ const load = (name) => import(new URL(name, sources));
 const { walkSoFar, withPhase } = await load("walk_strip.js");
 const { extentOf } = await load("phase_strip.js");
 const { conditionWords } = await load("condition_words.js");
+const { metricName } = await load("words.js");
+const { shown } = await load("units.js");
 const { valueOf } = await load("conditions_form.js");
 
 const part = (phase, start_s, end_s, distance_m = null) => ({
@@ -82,4 +84,12 @@ test("what is said in the start dialog goes out in seconds, metres and yes or no
   assert.equal(valueOf("timed_from_m", { value: "2" }), 2);
   assert.equal(valueOf("physical_assistance", { value: "false" }), false);
   assert.equal(valueOf("aid", { value: "rollator" }), "rollator");
+});
+
+test("what a walking test amounts to is named and shown in its unit", () => {
+  assert.equal(metricName("six_minute_walk_distance"), "Six-minute walk distance");
+  assert.equal(metricName("six_minute_walk_speed_slope"), "Speed slope");
+  assert.deepEqual(shown("1", "six_minute_walk_laps"), { factor: 1, unit: "", digits: 0 });
+  assert.deepEqual(shown("1", "ten_metre_walk_trials_aborted"), { factor: 1, unit: "", digits: 0 });
+  assert.deepEqual(shown("m", "six_minute_walk_distance"), { factor: 1, unit: "m", digits: 1 });
 });

@@ -45,6 +45,22 @@ export class FilesPanel {
       fill(this.exports, el("li", { class: "quiet" }, exported.message));
       return;
     }
-    fill(this.exports, ...exported.map((each) => el("li", {}, JSON.stringify(each))));
+    const { had, not } = possible(exported.items);
+    const links = had.map(({ format, file_name, about }) => {
+      const href = `/v1${this.path}/exports/${encodeURIComponent(format)}`;
+      return el("li", {}, el("a", { href, download: file_name }, format), el("span", { class: "quiet" }, about));
+    });
+    const missing = not.map(([reason, formats]) => el("li", { class: "quiet" }, `${formats.join(", ")}: ${reason}.`));
+    const fhir = el("a", { href: `/v1${this.path}/fhir`, download: true }, "fhir");
+    const about = "Bundle for a clinical information system (HL7 FHIR R4): every number, the report, how it was measured.";
+    fill(this.exports, ...links, el("li", {}, fhir, el("span", { class: "quiet" }, about)), ...missing);
   }
+}
+
+/** Formats that can be had, and for each reason those that cannot. */
+export function possible(items) {
+  const not = new Map();
+  for (const { format, reason } of items.filter(({ available }) => !available))
+    not.set(reason, [...(not.get(reason) ?? []), format]);
+  return { had: items.filter(({ available }) => available), not: [...not] };
 }

@@ -21,7 +21,8 @@ export class MeasuredView {
     this.charts = [];
     this.drawn = el("div", { class: "column" });
     this.files = new FilesPanel(session);
-    this.node = el("div", { class: "column" }, this.drawn, this.files.node);
+    this.numbers = el("div");
+    this.node = el("div", { class: "column" }, this.drawn, this.files.node, this.numbers);
     this.load();
   }
 
@@ -36,7 +37,8 @@ export class MeasuredView {
     // Nobody walks in an exercise: what swings to and fro there are no strides.
     if (!isExercise(this.session.task)) this.showCurves(curves?.curves ?? []);
     const numbers = numbersTable(all) ?? el("p", { class: "quiet" }, "No number could be measured.");
-    this.drawn.append(panel("Every number", "trust in words, and what speaks against it", numbers));
+    const meaning = "95 % interval where it is known, else standard deviation; trust, and cycles it rests on";
+    this.numbers.append(panel("Every number", meaning, numbers));
   }
 
   showPhases(phases, metrics) {

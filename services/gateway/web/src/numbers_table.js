@@ -1,10 +1,13 @@
 // Every number of a session: with its 95 % interval, what it rests on, and how far it may be relied on.
-import { el, table } from "./dom.js";
+import { el } from "./dom.js";
 import { GRADES, doubtWords } from "./trust_words.js";
 import { number, shown } from "./units.js";
 import { metricName } from "./words.js";
 
-const LETTERS = { left: "L", right: "R" };
+const WHOLE = "whole";
+const SIDES = { left: "Left", right: "Right", [WHOLE]: "Whole body" };
+
+const sideOf = ({ side }) => side ?? WHOLE;
 
 const isCount = ({ name }) => /^(strides|repetitions)_/.test(name);
 
@@ -17,28 +20,47 @@ export function spreadWords({ low, high, spread }, { factor, digits }) {
   return spread === null ? "" : `SD ${number(spread * factor, digits)}`;
 }
 
-/** Null where nothing was seen. */
+/** A row per number, a column per side that has any; null where nothing was seen. */
 export function numbersTable(metrics) {
   const seen = metrics.filter(isSeen);
   if (seen.length === 0) return null;
-  return table(
-    ["Number", "Side", "Value#", "95 % interval#", "Rests on#", "Trust", "Because of"],
-    el("tbody", {}, ...seen.map(row)),
+  const sides = Object.keys(SIDES).filter((side) => seen.some((metric) => sideOf(metric) === side));
+  const names = [...new Set(seen.map(({ name }) => name))];
+  const head = sides.map((side) => el("th", { scope: "col", class: `number ${side}` }, SIDES[side]));
+  return el(
+    "div",
+    { class: "scroll" },
+    el(
+      "table",
+      { class: "every-number" },
+      el("thead", {}, el("tr", {}, el("th", { scope: "col" }, "Number"), ...head)),
+      el("tbody", {}, ...names.map((name) => row(name, sides, seen))),
+    ),
   );
 }
 
-function row(metric) {
-  const scale = shown(metric.unit, metric.name);
-  const grade = GRADES[metric.grade];
+function row(name, sides, seen) {
+  const own = seen.filter((metric) => metric.name === name);
+  const { unit } = shown(own[0].unit, name);
   return el(
     "tr",
     {},
-    el("th", { scope: "row" }, metricName(metric.name), scale.unit ? el("span", { class: "unit" }, ` ${scale.unit}`) : null),
-    el("td", { class: metric.side }, LETTERS[metric.side] ?? ""),
-    el("td", { class: "number" }, metric.value === null ? "–" : number(metric.value * scale.factor, scale.digits)),
-    el("td", { class: "number quiet" }, metric.value === null ? "" : spreadWords(metric, scale)),
-    el("td", { class: "number" }, String(metric.strides)),
-    el("td", {}, el("span", { class: "chip small", "data-tone": grade.tone }, grade.word)),
-    el("td", { class: "quiet" }, doubtWords(metric)),
+    el("th", { scope: "row" }, metricName(name), unit ? el("span", { class: "unit" }, ` ${unit}`) : null),
+    ...sides.map((side) => cell(own.find((metric) => sideOf(metric) === side))),
+  );
+}
+
+function cell(metric) {
+  if (!metric) return el("td", {});
+  const scale = shown(metric.unit, metric.name);
+  const { word, tone } = GRADES[metric.grade];
+  const known = metric.value !== null;
+  const reasons = doubtWords(metric);
+  return el(
+    "td",
+    { class: "number", "data-tone": tone },
+    el("b", {}, known ? number(metric.value * scale.factor, scale.digits) : "–"),
+    known ? el("span", { class: "quiet" }, ` ${spreadWords(metric, scale)}`) : null,
+    el("small", { class: "quiet" }, [`${word}, of ${metric.strides}`, reasons].filter(Boolean).join(": ")),
   );
 }

@@ -1,5 +1,5 @@
 // Whether the patient really changed: a small chart per measure, the verdict in its words, and the rule behind it.
-import { conditionWords } from "./condition_words.js";
+import { PACES } from "./condition_words.js";
 import { el, fill, table } from "./dom.js";
 import { ProgressChart } from "./progress_chart.js";
 import { byMeasure, lineOf, notAlike } from "./progress_series.js";
@@ -7,7 +7,7 @@ import { DIRECTIONS, VERDICTS, ruleSentence, sayer } from "./rule_words.js";
 import { number, shown } from "./units.js";
 import { TASKS, metricName } from "./words.js";
 
-const FIRST = 8;
+const FIRST = 9;
 const LETTERS = { left: "L", right: "R" };
 
 export class ProgressPanel {
@@ -39,12 +39,11 @@ export class ProgressPanel {
 
   test(groups, treatments) {
     const [{ task, instruction }] = groups;
-    const pace = conditionWords({ speed_instruction: instruction });
     const all = groups.flatMap((group) => group.series);
     return el(
       "div",
       { class: "test-progress" },
-      el("h3", {}, [TASKS[task], ...pace].join(", ")),
+      el("h3", {}, instruction ? `${TASKS[task]}, pace: ${PACES[instruction].toLowerCase()}` : TASKS[task]),
       differences(all),
       el("div", { class: "multiples" }, ...groups.slice(0, FIRST).map((group) => this.multiple(group, treatments))),
       el("details", {}, el("summary", {}, `All ${all.length} measures with their verdicts`), verdictTable(all)),

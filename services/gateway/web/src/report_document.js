@@ -3,7 +3,6 @@ import { el } from "./dom.js";
 
 const GRADE_TONES = { good: "good", fair: "check", poor: "check", withheld: "lost" };
 const DRAWING = "image/svg+xml";
-const LETTERS = { left: "L", right: "R" };
 
 /** The parts of one reading level; `page` is 1 for therapist and patient, 2 for specialists. */
 export function reportDocument(report, page) {
@@ -28,8 +27,9 @@ function reportHeader({ title, subtitle, facts, quality }) {
     el(
       "p",
       { class: "quality" },
+      el("b", {}, quality.head),
       el("span", { class: "chip", "data-tone": GRADE_TONES[quality.grade] ?? "done" }, quality.word),
-      ` ${quality.text}`,
+      el("span", {}, quality.text),
     ),
     quality.warnings.length > 0 ? el("ul", { class: "warnings" }, ...quality.warnings.map((each) => el("li", {}, each))) : null,
   );
@@ -69,13 +69,13 @@ export function drawingOf(text) {
 /** Rows and columns as the report has them; sides bear their letter and colour. */
 export function reportTable({ caption, columns, rows }) {
   const numeric = ({ numeric: right, side }) => [right ? "number" : "", side ?? ""].join(" ").trim();
-  const head = columns.map((column) => el("th", { scope: "col", class: numeric(column) }, headOf(column)));
+  const head = columns.map((column) => el("th", { scope: "col", class: numeric(column) }, column.head));
   const body = rows.map(({ head: name, note, cells }) =>
     el(
       "tr",
       {},
       el("th", { scope: "row" }, name, note ? el("span", { class: "unit" }, ` ${note}`) : null),
-      ...cells.map((cell, place) => reportCell(cell, numeric(columns[place + 1] ?? { numeric: false, side: null }))),
+      ...cells.map((cell, place) => reportCell(cell, columns[columnOf(cells, place)])),
     ),
   );
   return el(
@@ -91,11 +91,13 @@ export function reportTable({ caption, columns, rows }) {
   );
 }
 
-const headOf = ({ head, side }) => (side && !head.startsWith(LETTERS[side]) ? `${LETTERS[side]} ${head}` : head);
+/** A cell before may have taken several columns; the first one holds the heads of the rows. */
+export const columnOf = (cells, place) => 1 + cells.slice(0, place).reduce((sum, { span }) => sum + span, 0);
 
-function reportCell({ text, note, tone }, place) {
+function reportCell({ text, note, tone, span }, { numeric }) {
   const small = note ? el("small", { class: "quiet" }, note) : null;
-  return el("td", { class: place.replace(/left|right/, ""), "data-tone": tone }, text, small);
+  const place = span > 1 ? "whole" : numeric ? "number" : null;
+  return el("td", { class: place, "data-tone": tone, colspan: span > 1 ? span : null }, text, small);
 }
 
 function reportFooter({ items, disclaimer, page }, number, count) {

@@ -66,7 +66,7 @@ function valueOf(what, value) {
 /** A number of a measure with its unit; changes bear their sign. */
 export function sayer(unit, name) {
   const { factor, unit: sign, digits } = shown(unit, name);
-  const places = unit === "m/s" || unit === "m" ? Math.max(2, digits) : Math.max(1, digits);
+  const places = Math.max(1, digits);
   const plain = (value) => `${number(value * factor, places)}${sign ? ` ${sign}` : ""}`.replace(" °", "°");
   return { plain, change: (value) => (value > 0 ? `+${plain(value)}` : plain(value)) };
 }
@@ -75,9 +75,11 @@ const interval = ({ change, low, high }, say) =>
   `Change ${say.change(change)} (95 % interval ${say.change(low)} to ${say.change(high)})`;
 
 const SENTENCES = {
-  change_beyond_mdc: (p, say) => `${interval(p, say)}: wholly beyond the MDC of ${say.plain(p.mdc)}.`,
-  change_within_mdc: (p, say) => `${interval(p, say)}: wholly within the MDC of ${say.plain(p.mdc)}.`,
-  interval_reaches_mdc: (p, say) => `${interval(p, say)}: the interval reaches across the MDC of ${say.plain(p.mdc)}.`,
+  change_beyond_mdc: (p, say) =>
+    `${interval(p, say)}: larger than the MDC of ${say.plain(p.mdc)} and our own error together (${say.plain(p.limit)}).`,
+  change_within_mdc: (p, say) => `${interval(p, say)}: the whole interval lies within the MDC of ${say.plain(p.mdc)}.`,
+  interval_reaches_mdc: (p, say) =>
+    `${interval(p, say)}: the interval reaches across the MDC of ${say.plain(p.mdc)}; for a real change it takes ${say.plain(p.limit)}.`,
   own_error_not_smaller: (p, say) =>
     `Our own 95 % interval of the change (± ${say.plain(p.half_interval)}) is not smaller than the MDC of ${say.plain(p.mdc)}.`,
   below_smallest_change: (p, say) =>

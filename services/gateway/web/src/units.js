@@ -12,17 +12,20 @@ const SHOWN = {
   "m/s": { factor: 1, unit: "m/s", digits: 2 },
   s: { factor: 1, unit: "s", digits: 2 },
   "steps/min": { factor: 1, unit: "steps/min", digits: 0 },
+  "m/s/min": { factor: 1, unit: "m/s each minute", digits: 3 },
   "rad/s": { factor: DEGREES, unit: "°/s", digits: 0 },
   "rad/repetition": { factor: DEGREES, unit: "° each time", digits: 2 },
   "repetitions/min": { factor: 1, unit: "/min", digits: 1 },
 };
 
+const COUNTS = /^(strides|repetitions|tug_steps|tug_attempts)|_(turns|laps|rests|trials|trials_aborted)$/;
+
 /** How a metric of that unit is shown: factor, unit, digits. Shares of one become per cent. */
 export function shown(unit, name) {
   if (name.endsWith("_fraction")) return PERCENT;
   if (name.endsWith("_cv") || name.endsWith("_timing")) return { ...PERCENT, digits: 1 };
-  if (name.startsWith("strides_") || name.startsWith("repetitions_") || name === "tug_steps")
-    return { factor: 1, unit: "", digits: 0 };
+  if (COUNTS.test(name)) return { factor: 1, unit: "", digits: 0 };
+  if (name.includes("walk_distance")) return { ...SHOWN.m, digits: 1 };
   return SHOWN[unit] ?? { factor: 1, unit: unit === "1" ? "" : unit, digits: 2 };
 }
 

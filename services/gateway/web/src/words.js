@@ -1,6 +1,5 @@
 // Every sentence about a state, in one place: the same words everywhere. Never normal or abnormal.
 
-import { isExercise } from "./arrangement.js";
 import { cameraWord, seesNobody } from "./camera_words.js";
 
 const SIDES = { left: "Left", right: "Right" };
@@ -59,65 +58,35 @@ const METRICS = {
   tug_turn_to_sit_rate: "Largest turn rate before sitting",
   tug_rise_rate: "Largest thigh rate in rising",
   tug_steps: "Steps",
+  tug_sit_to_stand_time: "Time to stand up",
+  tug_walk_out_time: "Time to walk out",
+  tug_turn_time: "Time to turn",
+  tug_walk_back_time: "Time to walk back",
+  tug_turn_to_sit_time: "Time to turn and sit",
+  tug_attempts: "Attempts completed",
+  tug_attempts_aborted: "Attempts not seen to their end",
+  six_minute_walk_distance: "Six-minute walk distance",
+  ten_metre_walk_speed: "Ten-metre walk speed",
+  ten_metre_walk_time: "Ten-metre walk time",
   strides_counted: "Strides counted",
   strides_turning: "Strides while turning",
   strides_rejected: "Strides left out",
 };
-const TIMED = "tug_";
-const RATIO = "_ratio_larger_to_smaller";
-const VARIATION = "_cv";
-const DEVIATION = "_sd";
-const TIMED_HEADLINES = ["tug_time", "tug_steps", "tug_rise_rate", "tug_turn_rate", "tug_turn_to_sit_rate"];
-const HEADLINES = [...TIMED_HEADLINES, "walking_speed", "cadence", "stride_length", "stride_time"];
+const ENDINGS = {
+  _ratio_larger_to_smaller: ", larger / smaller side",
+  _ratio_paretic_to_non_paretic: ", paretic / non-paretic",
+  _cv: ", variation",
+  _sd: ", standard deviation",
+  _fraction: "",
+};
 
 /** Name of a metric for the screen. */
 export function metricName(name) {
-  for (const suffix of [RATIO, VARIATION, DEVIATION])
-    if (name.endsWith(suffix)) return metricName(name.slice(0, -suffix.length));
-  return METRICS[name] ?? jointName(name.replace(/^repetition_/, ""))[0];
+  if (name in METRICS) return METRICS[name];
+  for (const [ending, words] of Object.entries(ENDINGS))
+    if (name.endsWith(ending)) return metricName(name.slice(0, -ending.length)) + words;
+  return jointName(name.replace(/^(repetition|six_minute_walk|ten_metre_walk)_/, ""))[0];
 }
-
-/** Where a metric belongs in a report; null for those that the spread beside the mean says already. */
-export function metricGroup({ name, side }) {
-  if (name.endsWith(DEVIATION)) return null;
-  if (name.startsWith(TIMED)) return TIMED_HEADLINES.includes(name) ? "headlines" : "timed";
-  if (name.endsWith(RATIO)) return "symmetry";
-  if (name.startsWith("repetition")) return name.endsWith(VARIATION) ? null : "exercise";
-  if (name.startsWith("rhythm_side_")) return "legs";
-  if (name.endsWith(VARIATION)) return side === null ? "variability" : null;
-  if (side !== null) return name.startsWith("strides_") ? "counts" : "sides";
-  return "headlines";
-}
-
-/** Order of the headlines; unknown ones come last. */
-export const headlineRank = ({ name }) => (HEADLINES.includes(name) ? HEADLINES.indexOf(name) : HEADLINES.length);
-
-/** What the numbers of a report rest on, and what zero means. In an exercise nobody makes strides. */
-export function qualityText(metrics, { datum, task }) {
-  const count = (name) =>
-    metrics.filter((metric) => metric.name === name).reduce((sum, metric) => sum + (metric.value ?? 0), 0);
-  const told = ([name, words, one = words]) =>
-    count(name) > 0 ? `${count(name)} ${count(name) === 1 ? one : words}` : null;
-  const listed = (counts) => counts.map(told).filter(Boolean).join(", ");
-  const strides = listed(isExercise(task) ? REPETITION_COUNTS : STRIDE_COUNTS);
-  const facts = [listed(ATTEMPT_COUNTS), strides, datum ? `zero is ${datum}` : null].filter(Boolean);
-  return facts.length > 0 ? `Quality: ${facts.join("  ·  ")}` : "";
-}
-
-const STRIDE_COUNTS = [
-  ["strides_counted", "strides count", "stride counts"],
-  ["strides_starting_or_stopping", "starting or stopping"],
-  ["strides_turning", "while turning"],
-  ["strides_rejected", "left out"],
-];
-const ATTEMPT_COUNTS = [
-  ["tug_attempts", "attempts completed", "attempt completed"],
-  ["tug_attempts_aborted", "not seen to their end"],
-];
-const REPETITION_COUNTS = [
-  ["repetitions_counted", "repetitions count", "repetition counts"],
-  ["repetitions_rejected", "left out"],
-];
 
 /** What a sensor's state means to a therapist. */
 export const SENSOR_WORDS = {

@@ -1,0 +1,75 @@
+"""A patient to be shown: several real visits of a simulated one who walks faster each time, weeks apart."""
+
+import json
+import time
+import urllib.request
+from collections.abc import Sequence
+from dataclasses import dataclass
+from datetime import UTC, datetime, timedelta
+from pathlib import Path
+from typing import Any
+
+from services.gateway.database import open_database
+from services.gateway.settings import GatewaySettings
+from services.gateway.tables import SessionRow
+
+PERSON = {"year_of_birth": 1957, "sex": "female", "population": "stroke_chronic", "paretic_side": "left"}
+SPEEDS = (0.50, 0.53, 0.60, 0.68, 0.74)
+WALK = "synthetic:walk?patient=2&affected=1&speed={speed}&seed=11&duration=100"
+SAID = {
+    "aid": "cane",
+    "orthosis": "none",
+    "footwear": "shoes",
+    "physical_assistance": False,
+    "speed_instruction": "comfortable",
+}
+LAST = datetime(2026, 11, 16, 9, 30, tzinfo=UTC)
+BETWEEN = timedelta(days=14)
+TREATMENTS = (("2026-10-01", "gait_training"), ("2026-10-26", "botulinum_toxin"))
+DONE = ("finished", "interrupted", "failed")
+
+
+@dataclass(frozen=True)
+class Shown:
+    """Whom the pictures show: code, and sessions from the first visit to the last."""
+
+    code: str
+    sessions: list[str]
+
+
+def visits(url: str, data: Path, patience_s: float) -> Shown:
+    """Walk all visits as fast as the services follow, then move them apart in the database at `data`."""
+    code = str(_ask(url, "patients", PERSON)["code"])
+    for date, kind in TREATMENTS:
+        _ask(url, f"patients/{code}/treatments", {"date": date, "kind": kind})
+    walks = [_begin(url, code, speed) for speed in SPEEDS]
+    end = time.monotonic() + patience_s
+    while any(_ask(url, f"sessions/{walk}")["state"] not in DONE for walk in walks):
+        if time.monotonic() > end:
+            raise TimeoutError(f"the walks did not end within {patience_s:.0f} s")
+        time.sleep(0.5)
+    _move_apart(data, walks)
+    return Shown(code, walks)
+
+
+def _begin(url: str, code: str, speed: float) -> str:
+    wish = {"source": WALK.format(speed=speed), "speed": None, "patient": code, "conditions": SAID}
+    return str(_ask(url, "sessions", wish)["id"])
+
+
+def _move_apart(data: Path, walks: Sequence[str]) -> None:
+    database = open_database(GatewaySettings(data_dir=data, database="").database_url)
+    try:
+        with database.transaction() as records:
+            for place, walk in enumerate(reversed(walks)):
+                records.get_one(SessionRow, walk).started = LAST - place * BETWEEN
+    finally:
+        database.close()
+
+
+def _ask(url: str, path: str, body: dict[str, Any] | None = None) -> dict[str, Any]:
+    data = None if body is None else json.dumps(body).encode()
+    request = urllib.request.Request(f"{url}/v1/{path}", data, {"Content-Type": "application/json"})
+    with urllib.request.urlopen(request, timeout=60) as answer:
+        told: dict[str, Any] = json.load(answer)
+    return told
