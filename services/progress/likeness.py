@@ -7,8 +7,8 @@ from services.progress.visits import Trial
 
 SAID_BY_TASK: dict[Task, tuple[str, ...]] = {
     Task.WALK: ("aid", "orthosis", "footwear", "speed_instruction"),
-    Task.TEN_METRE_WALK: ("aid", "orthosis", "footwear", "speed_instruction", "start", "timed_from_m", "timed_to_m"),
-    Task.SIX_MINUTE_WALK: ("aid", "orthosis", "footwear", "test_duration_s"),
+    Task.TEN_METRE_WALK: ("aid", "orthosis", "footwear", "speed_instruction", "start"),
+    Task.SIX_MINUTE_WALK: ("aid", "orthosis", "footwear"),
     Task.TIMED_UP_AND_GO: ("aid", "orthosis", "footwear"),
     Task.MARCHING: ("aid", "orthosis", "footwear"),
 }

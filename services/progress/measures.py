@@ -4,6 +4,7 @@ import math
 from dataclasses import dataclass
 from enum import StrEnum
 
+from services.definitions.definition import Basis
 from services.definitions.table import DEFINITIONS
 
 
@@ -54,11 +55,13 @@ ORDER = (
 )
 """First in every answer, in this order (clinical conventions, section 10.3); the others follow in their own."""
 
-_NOT_FOLLOWED_STARTS = ("strides_", "rhythm_", "tug_attempts", "repetitions_")
-"""Counts say how much was seen, and distances from an earlier visit are no property of this one."""
+_NOT_FOLLOWED_STARTS = ("rhythm_", "tug_attempts")
+"""Distances from an earlier visit are no property of this one."""
 
-_EXPORT_ONLY = frozenset(definition.name for definition in DEFINITIONS if definition.export_only)
-"""One symmetry is followed, the ratio; the others are for files."""
+_NOT_FOLLOWED = frozenset(
+    definition.name for definition in DEFINITIONS if definition.export_only or definition.basis is Basis.COUNT
+)
+"""Counts say how much was seen; of symmetries the ratio is followed, the others are for files."""
 
 
 def measure_of(name: str) -> Measure:
@@ -74,14 +77,14 @@ def measure_of(name: str) -> Measure:
     return Measure(
         name,
         better,
-        SMALLEST_KNEE_CHANGE if name == "knee_flexion_range" else None,
+        SMALLEST_KNEE_CHANGE if name.endswith("knee_flexion_range") else None,
         LEAST_STRIDES_OF_VARIABILITY if variable else 0,
     )
 
 
 def is_followed(name: str) -> bool:
     """Whether a metric is compared between visits."""
-    return name not in _EXPORT_ONLY and not name.startswith(_NOT_FOLLOWED_STARTS)
+    return name not in _NOT_FOLLOWED and not name.startswith(_NOT_FOLLOWED_STARTS)
 
 
 def place(name: str) -> int:
