@@ -74,7 +74,10 @@ class TenMetreTotals:
         return NO_TRIAL if self._sees_steps else NO_STEP_LENGTHS
 
     def _mean(self, definition: Definition, values: Iterable[Value], trials: int) -> Metric:
-        """Mean; error sqrt((spread^2 + mean variance of a trial) / n), from two trials on with their scatter."""
+        """Mean; error sqrt(spread^2 / n + mean variance of a trial).
+
+        Whoever starts at the same line steps alike in every trial, so what a line errs by does not average out.
+        """
         moments, variances = Moments.empty(), Moments.empty()
         for value, std in values:
             moments.add(value)
@@ -83,9 +86,9 @@ class TenMetreTotals:
             return summary.withheld(definition, None, 0, NOT_OBSERVED if trials else self._no_trial)
         spread = moments.spread()
         scatter = 0.0 if spread is None else float(spread) ** 2
-        error = math.sqrt((scatter + float(variances.mean)) / moments.count)
         told, value, n = None if spread is None else float(spread), float(moments.mean), moments.count
-        interval = of_mean(value, math.sqrt(scatter / n), n - 1, math.sqrt(float(variances.mean) / n))
+        error = math.sqrt(scatter / n + float(variances.mean))
+        interval = of_mean(value, math.sqrt(scatter / n), n - 1, math.sqrt(float(variances.mean)))
         return summary.shown(definition, None, value, told, error or None, n, interval if error else None)
 
     def snapshot(self) -> State:

@@ -8,7 +8,7 @@ from rich.progress import track
 
 from schemas.vocabulary import TaskPhaseKind
 from services.bench.scoreboard import Row, at_most, informative
-from services.bench.walking_tests.sessions import Outcome, measured, truth_of
+from services.bench.walking_tests.sessions import UNCHANGED, Outcome, measured, measured_as, truth_of
 from services.ingest.synthetic.corridor import SyntheticTenMetres
 
 CASES = (
@@ -78,8 +78,9 @@ def ten_metre_rows() -> list[Row]:
     known, unknown, on = Tally(), Tally(), Tally()
     for spec in track(_specs(CASES, FIRST_SEED), description="ten metres"):
         truth = truth_of(spec)
-        known.add(truth, measured(spec), rng)
-        unknown.add(truth, measured(spec, {"walkway_m": None}), rng)
+        said, unsaid = measured_as(spec, [UNCHANGED, {"walkway_m": None}])
+        known.add(truth, said, rng)
+        unknown.add(truth, unsaid, rng)
     for spec in _specs(ON_AND_ON, FIRST_SEED + PEOPLE * len(CASES)):
         on.add(truth_of(spec), measured(spec), rng)
     return [

@@ -122,7 +122,7 @@ class TenMetres:
 
     def _last_told(self, total_m: float, scale: float | None, end: Boundary) -> list[TaskPhase]:
         times = self._times(scale or 1.0, scaled=scale is not None)
-        if times.leaves is None and self._zone.ends_at(total_m * (scale or 1.0)):
+        if times.leaves is None and self._zone.ends_at(total_m * (scale or 1.0), scaled=scale is not None):
             times = times._replace(leaves=end)
         phase = self._book.phase
         if times.enters is None or times.leaves is None or phase is None:

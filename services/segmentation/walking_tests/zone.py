@@ -56,9 +56,11 @@ class Zone:
         scale = self.walkway_m / total_m
         return scale if abs(scale - 1) <= self.parameters.most_scaling else None
 
-    def ends_at(self, total_m: float) -> bool:
-        """Whether somebody who stops after so many metres has reached the end of the zone, and not gone beyond."""
-        return abs(total_m - self.to_m) <= self.parameters.reached_m
+    def ends_at(self, total_m: float, *, scaled: bool) -> bool:
+        """Whether somebody who stops after so many metres without having crossed the last line stops at it."""
+        p = self.parameters
+        unsure_m = 0.0 if scaled else 2 * p.length_std_share * self.to_m
+        return abs(total_m - self.to_m) <= p.reached_m + unsure_m
 
     def times(self, marks: Sequence[Mark], ruler: Ruler, start: LengthStart, *, scaled: bool) -> ZoneTimes:
         """Of a length. `scaled`: between the ends of a known walkway."""

@@ -70,6 +70,12 @@ def test_all_of_the_walkway_can_be_timed() -> None:
     assert (zone.end_ns - zone.start_ns) * 1e-9 == pytest.approx(trial.end_s - trial.start_s, abs=0.8)
 
 
+def test_whoever_stops_about_the_last_line_stops_at_it_where_no_walkway_is_declared() -> None:
+    [zone] = zones(through(WHOLE, joint_corridor(WHOLE).messages(), walkway_m=None))
+    [known] = zones(outputs(WHOLE))
+    assert zone.end_ns == known.end_ns
+
+
 def test_a_trial_that_stops_within_the_zone_is_given_up() -> None:
     truth = joint_corridor(TWICE).truth
     cut = [
