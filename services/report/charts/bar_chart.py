@@ -8,7 +8,8 @@ from services.report.charts.axes import Plot, digits_of, draw_axes, ticks
 from services.report.charts.canvas import Box, Canvas
 from services.report.charts.colours import SIDE, SOFT_INK, WHITE, WHOLE
 
-WIDTH, HEIGHT = 340.0, 120.0
+HALF, WHOLE_WIDTH, HEIGHT = 290.0, 600.0, 120.0
+"""Widths for half a page and for a whole one, so that text is as large on either."""
 LEFT, TOP, RIGHT, BOTTOM = 26.0, 18.0, 6.0, 24.0
 MOST_LABELS = 12
 WIDEST_SHARE = 0.7
@@ -35,12 +36,13 @@ class BarLabels:
     decimal_mark: str
 
 
-def bar_chart(name: str, bars: Sequence[Bar], labels: BarLabels) -> str:
+def bar_chart(name: str, bars: Sequence[Bar], labels: BarLabels, *, wide: bool = False) -> str:
     """The chart as SVG. `name` is its id on the page."""
-    canvas = Canvas(WIDTH, HEIGHT)
+    width = WHOLE_WIDTH if wide else HALF
+    canvas = Canvas(width, HEIGHT)
     y_ticks = ticks(0.0, max(bar.value for bar in bars), 4)
     room = max(len(bars), 6)
-    plot = Plot(Box(LEFT, TOP, WIDTH - RIGHT, HEIGHT - BOTTOM), (0.4, room + 0.6), (0.0, y_ticks[-1]))
+    plot = Plot(Box(LEFT, TOP, width - RIGHT, HEIGHT - BOTTOM), (0.4, room + 0.6), (0.0, y_ticks[-1]))
     digits = digits_of(y_ticks[1])
     texts = [f"{value:.{digits}f}".replace(".", labels.decimal_mark) for value in y_ticks]
     step = max(1, -(-len(bars) // MOST_LABELS))
@@ -52,5 +54,5 @@ def bar_chart(name: str, bars: Sequence[Bar], labels: BarLabels) -> str:
         box = Box(left, plot.up(bar.value), right, plot.box.bottom)
         canvas.rectangle(box, colour if bar.counts else WHITE, colour)
     canvas.text((0, 7.5), labels.y_axis, colour=SOFT_INK)
-    canvas.text((WIDTH - RIGHT, HEIGHT - 3), labels.x_axis, anchor="end", colour=SOFT_INK)
+    canvas.text((width - RIGHT, HEIGHT - 3), labels.x_axis, anchor="end", colour=SOFT_INK)
     return canvas.svg(name, labels.title, labels.description)

@@ -6,7 +6,7 @@ from dataclasses import dataclass
 from services.report.charts.canvas import TEXT_SIZE, Box, Canvas
 from services.report.charts.colours import INK, LINE, SOFT_INK
 
-WIDTH, ROW, HEAD = 680.0, 34.0, 62.0
+WIDTH, ROW, HEAD = 600.0, 34.0, 46.0
 LETTER_WIDTH = 0.5
 """Width of a letter in text sizes, about; decides whether a name fits into its bar."""
 GROUNDS = {

@@ -7,12 +7,9 @@ from services.definitions.variability import COUNTED, ENDS, REJECTED, TURNING
 from services.report.catalogue import Catalogue
 from services.report.content import Fact, Footer, Header, QualityLine
 from services.report.phrases import grade_word, subject_name
+from services.report.sections.scope import EXERCISES, WALKING_TESTS, in_scope
 from services.report.source import ReportSource
 
-EXERCISES = (
-    Task.KNEE_FLEXION, Task.SQUAT, Task.STEPPING, Task.TRUNK_TILT_SAGITTAL, Task.TRUNK_TILT_FRONTAL,
-)  # fmt: skip
-TESTS = (Task.SIX_MINUTE_WALK, Task.TEN_METRE_WALK)
 LONGEST_SILENCE_S = 1.0
 """s: a sensor that was silent longer is named in the quality line."""
 LARGEST_LOSS = 0.05
@@ -28,11 +25,11 @@ def header(source: ReportSource, words: Catalogue) -> Header:
         kind = "exercise"
     elif task is Task.TIMED_UP_AND_GO:
         kind = "timed_up_and_go"
-    elif task in TESTS:
+    elif task in WALKING_TESTS:
         kind = "test"
     return Header(
         title=words.text(f"title.{kind}"),
-        subtitle=f"{_capital(test_name(source.description, words))}, {words.day(source.began.date())}",
+        subtitle=f"{_capital(words.text(f'task.{task}'))}, {words.day(source.began.date())}",
         facts=_facts(source, words),
         quality=quality_line(source, words),
     )
@@ -127,7 +124,7 @@ def worst_grade(source: ReportSource) -> TrustGrade | None:
     """The middle one of the grades that the given values have: half of them are at least as good."""
     order = (TrustGrade.GOOD, TrustGrade.FAIR, TrustGrade.POOR)
     grades = sorted(
-        order.index(each.grade) for each in source.metrics.metrics if each.grade in order and each.value is not None
+        order.index(each.grade) for each in in_scope(source) if each.grade in order and each.value is not None
     )
     return order[grades[len(grades) // 2]] if grades else None
 

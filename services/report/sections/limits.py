@@ -6,7 +6,8 @@ from services.definitions.variability import ENDS, REJECTED, TURNING
 from services.report.catalogue import Catalogue
 from services.report.content import Section, SectionId
 from services.report.phrases import why_withheld
-from services.report.sections.header import EXERCISES, count_of
+from services.report.sections.header import count_of
+from services.report.sections.scope import EXERCISES, in_scope
 from services.report.source import ReportSource
 
 MOST_WITHHELD = 8
@@ -53,7 +54,7 @@ def _not_measured(source: ReportSource, words: Catalogue, *, exercise: bool) -> 
 
 def _withheld(source: ReportSource, words: Catalogue) -> list[str]:
     by_reason: dict[str, list[str]] = {}
-    for metric in source.metrics.metrics:
+    for metric in in_scope(source):
         if metric.value is None and metric.strides > 0:
             names = by_reason.setdefault(why_withheld(words, metric), [])
             name = _named(words, metric)

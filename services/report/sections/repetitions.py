@@ -8,6 +8,7 @@ from services.report.charts.bar_chart import Bar, BarLabels, bar_chart
 from services.report.content import Chart, Section, SectionId
 from services.report.phrases import joint_name
 from services.report.sections.measure_table import measure_table
+from services.report.sections.scope import in_scope
 from services.report.sections.table_notes import table_notes
 from services.report.source import ReportSource
 
@@ -18,7 +19,8 @@ MOST_BARS = 60
 
 def repetitions(source: ReportSource, words: Catalogue) -> Section | None:
     """None where nothing of an exercise was seen."""
-    names = list(dict.fromkeys(each.name for each in source.metrics.metrics if each.name.startswith("repetition")))
+    told = [each.name for each in in_scope(source) if "_ratio_" not in each.name]
+    names = list(dict.fromkeys(name for name in told if name.startswith("repetition")))
     title = words.text("title.repetitions")
     table = measure_table(source, words, names, title)
     charts = _charts(source, words)
@@ -57,6 +59,5 @@ def _chart(words: Catalogue, followed: str, bars: list[Bar], count: int) -> Char
         words.text("format.decimal_mark"),
     )  # fmt: skip
     identity = f"repetitions-{followed.replace('_', '-')}"
-    return Chart(
-        id=identity, title=title, svg=bar_chart(identity, bars, labels), alt=alt, columns=12 if count == 1 else 6
-    )
+    svg = bar_chart(identity, bars, labels, wide=count == 1)
+    return Chart(id=identity, title=title, svg=svg, alt=alt, columns=12 if count == 1 else 6)

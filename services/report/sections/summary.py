@@ -11,9 +11,9 @@ from services.report.content import Section, SectionId
 from services.report.phrases import first_rule, why_withheld
 from services.report.sections.cells import place
 from services.report.sections.exercise_sentences import exercise_sentences
-from services.report.sections.header import EXERCISES
 from services.report.sections.measure_table import current
 from services.report.sections.reference_note import short_origin
+from services.report.sections.scope import EXERCISES, in_scope
 from services.report.sections.test_sentences import test_sentences
 from services.report.source import ReportSource
 from services.report.units import Measured
@@ -35,7 +35,7 @@ def summary(source: ReportSource, words: Catalogue) -> Section:
     if source.description.task in EXERCISES:
         rules = (exercise_sentences, _changes, _withheld)
     sentences = [sentence for rule in rules for sentence in rule(source, words)]
-    if not any(metric.value is not None for metric in source.metrics.metrics if not _is_count(metric)):
+    if not any(metric.value is not None for metric in in_scope(source) if not _is_count(metric)):
         sentences = [_nothing(source, words)]
     return Section(
         id=SectionId.SUMMARY, page=1, title=words.text("title.summary"), sentences=sentences, charts=[], table=None,
@@ -48,7 +48,7 @@ def _is_count(metric: Metric) -> bool:
 
 
 def _nothing(source: ReportSource, words: Catalogue) -> str:
-    withheld = [metric for metric in source.metrics.metrics if metric.value is None and metric.doubts]
+    withheld = [metric for metric in in_scope(source) if metric.value is None and metric.doubts]
     if not withheld:
         return words.text("summary.nothing_plain")
     return words.text("summary.nothing", reason=why_withheld(words, withheld[0]))
@@ -153,7 +153,7 @@ def _change(source: ReportSource, words: Catalogue, name: str, side: Side | None
 
 
 def _withheld(source: ReportSource, words: Catalogue) -> Iterator[str]:
-    count = sum(metric.value is None and metric.strides > 0 for metric in source.metrics.metrics)
+    count = sum(metric.value is None and metric.strides > 0 for metric in in_scope(source))
     if count:
         yield words.one_or_more("summary.withheld", count)
 

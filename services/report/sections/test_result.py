@@ -19,6 +19,8 @@ PREFIXES: dict[Task, str] = {
 """What the names of a test's own metrics begin with."""
 MINUTES = ("first", "second", "third", "fourth", "fifth", "sixth")
 """Minutes of a six-minute walk, whose speeds are drawn instead of listed."""
+LEAST_MINUTES = 2
+"""Minutes from which on a drawing tells more than the table."""
 MOST_ROWS = 3
 """Attempts drawn at most."""
 
@@ -46,10 +48,10 @@ def _minute_speed(minute: str) -> str:
 
 
 def _minutes(source: ReportSource, words: Catalogue) -> list[Chart]:
-    """Speed minute by minute; nothing where it was not told."""
+    """Speed minute by minute; nothing where it was told of one minute only."""
     values = [source.value(_minute_speed(minute)) for minute in MINUTES]
     told = [value for value in values if value is not None]
-    if not told:
+    if len(told) < LEAST_MINUTES:
         return []
     title = words.text("title.minutes")
     speed = Measured(words, "m/s", "walking_speed")
