@@ -88,7 +88,7 @@ def _put(index: "Index", outcome: "Outcome") -> None:
     result = outcome.result
     if result is None or result.metrics is None or not result.metrics.final or result.broken:
         return
-    if not index.replace(outcome.session, result.metrics):
+    if not index.replace(result.description, result.metrics):
         out.print("  the pages do not know this session; its result is in its files only")
 
 

@@ -7,6 +7,7 @@ from pathlib import Path
 from schemas.archive_layout import RecordingState
 from schemas.health import Gap
 from schemas.metrics import SessionMetrics
+from schemas.session import SessionDescription
 from schemas.signals import GAP, METRICS
 from services.cli.reprocess.fingerprints import Fingerprints, StreamDifference
 from services.flow.chain import Chain
@@ -36,8 +37,7 @@ class UnderWay(CannotRecompute):
 class Recomputed:
     """What became of one session. `stored` is the newest result there was, None where there was none."""
 
-    session: str
-    title: str
+    description: SessionDescription
     stored_version: str | None
     length_s: float
     stored: SessionMetrics | None = None
@@ -114,8 +114,7 @@ class _Run:
         self._lost = 0
         self._told = 0.0
         self.result = Recomputed(
-            description.session,
-            description.title,
+            description,
             archived.version,
             self._length_ns / 1e9,
             lateness_decided=bool(description.hubs and description.cameras),

@@ -41,7 +41,7 @@ def verdict(outcome: Outcome) -> str:
 def show(outcome: Outcome, console: Console) -> None:
     """The verdict, what has to be known about it, and a row for each metric that changed."""
     result = outcome.result
-    title = "" if result is None else f" ({result.title})"
+    title = "" if result is None else f" ({result.description.title})"
     console.print(f"[bold]{outcome.session}[/bold]{title}: {verdict(outcome)}", highlight=False)
     if result is None:
         return
@@ -63,13 +63,17 @@ def _show_changes(changes: list[MetricChange], console: Console) -> None:
     if rows:
         console.print(_table(rows))
     for kind in (kind for kind in ChangeKind if kind not in IN_TABLE):
-        named = [_name(change.metric) for change in changes if change.kind is kind]
+        named = _names([change.metric for change in changes if change.kind is kind])
         if named:
-            console.print(f"  {kind} ({MEANING[kind]}): {', '.join(named)}", highlight=False)
+            console.print(f"  {kind} ({MEANING[kind]}): {'; '.join(named)}", highlight=False)
 
 
-def _name(metric: Metric) -> str:
-    return metric.name.replace("_", " ") + (f" {metric.side}" if metric.side else "")
+def _names(metrics: list[Metric]) -> list[str]:
+    """Each once, with the sides that it is about."""
+    sides: dict[str, list[str]] = {}
+    for metric in metrics:
+        sides.setdefault(metric.name.replace("_", " "), []).extend([metric.side] if metric.side else [])
+    return [f"{name} ({', '.join(about)})" if about else name for name, about in sides.items()]
 
 
 def _difference(result: Recomputed) -> Difference:
@@ -114,7 +118,7 @@ def as_json(outcome: Outcome) -> dict[str, Any]:
         return row
     changed = _difference(result)
     return row | {
-        "title": result.title,
+        "title": result.description.title,
         "stored_software": None if result.stored is None else result.stored.software,
         "stored_version": result.stored_version,
         "software": SOFTWARE,

@@ -111,7 +111,7 @@ class Index:
         finally:
             database.close()
 
-    def replace(self, session: str, metrics: SessionMetrics) -> bool:
+    def replace(self, description: SessionDescription, metrics: SessionMetrics) -> bool:
         """Put a result in place of the current one, which is kept. False when the session is not known there."""
         with self._database.transaction() as transaction:
-            return replace_metrics(transaction, session, metrics)
+            return replace_metrics(transaction, description.session, metrics, description)

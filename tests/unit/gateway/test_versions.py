@@ -6,7 +6,8 @@ from http import HTTPStatus
 import pytest
 
 from schemas.archive_layout import SegmentName
-from services.gateway.tables import FormerMetricsRow
+from schemas.session import SessionDescription
+from services.gateway.tables import FormerMetricsRow, SessionRow
 from services.gateway.versions.records import replace_metrics
 
 OLD, NEW, NEWER = (f"ambula 0.1.0+{digit * 8}" for digit in "123")
@@ -103,3 +104,14 @@ def test_a_former_result_of_an_older_schema_is_still_shown(client, measured, res
         )  # fmt: skip
     versions = client.get("/v1/sessions/a/versions").json()["versions"]
     assert {version["software"] for version in versions} == {OLD, NEW, "ambula 0.1.0"}
+
+
+def test_a_session_from_before_descriptions_were_kept_gets_its_own(client, measured, result, made):
+    described = made.describe("a")
+    with measured.database.transaction() as database:
+        database.get(SessionRow, "a").description = None
+    with measured.database.transaction() as database:
+        assert replace_metrics(database, "a", result(NEW, 1.1), described)
+    with measured.database.transaction() as database:
+        stored = database.get(SessionRow, "a").description
+    assert SessionDescription.model_validate(stored) == described
