@@ -12,7 +12,7 @@ from services.exports.opensim.coordinates import to_coordinates
 from services.exports.opensim.marker_file import marker_file
 from services.exports.opensim.models import RAJAGOPAL, OpenSimModel, known_model
 from services.exports.opensim.storage_file import storage_file
-from services.exports.session import Session, events_among, facts_of, newest_metrics
+from services.exports.session import Session, contents_of, facts_of
 from services.exports.tables.csv_file import csv_text
 from services.exports.tables.kinds import TABLES
 
@@ -47,9 +47,7 @@ def _table(name: str) -> Writing:
 
 
 def _c3d(session: Session, _: Options) -> Iterator[bytes]:
-    motion = gather_motion(session.payloads(JOINT_STATE, JOINT_CENTRES))
-    events = events_among(session.payloads(GAIT_EVENT)) if GAIT_EVENT.name in session.signals else []
-    return c3d_file(facts_of(session), motion, events, newest_metrics(session))
+    return c3d_file(facts_of(session), *contents_of(session))
 
 
 def _storage(*, in_degrees: bool) -> Writing:

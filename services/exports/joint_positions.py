@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 from schemas.session import Anthropometry
 from schemas.vocabulary import LOWER_BODY, JointCentre, Segment
 from services.exports.motion import Array, Motion, Track
+from services.exports.parameters import ROWS_AT_A_TIME
 
 IN_ROOM = "in the room of the camera, y up"
 AT_PELVIS = (
@@ -57,22 +58,34 @@ def joint_positions(motion: Motion, anthropometry: Anthropometry) -> Positions |
 
 def leg_track(angles: Track, told: frozenset[str], anthropometry: Anthropometry) -> Track:
     """Centres of LEG_CENTRES for the angles of LOWER_BODY, those that are not told at zero."""
-    from services.biomech.lower_body import LowerBodyModel
-
     names = [freedom.name for freedom in LOWER_BODY]
     known = np.array([name in told for name in names])
-    rotation, origin = leg_poses(np.where(known, angles.value[..., 0], 0.0), anthropometry)
+    valid = []
+    for side in ("right", "left"):
+        hip, knee = (angles.valid[:, names.index(f"{name}_flexion_{side}")] for name in ("hip", "knee"))
+        hip = hip & _follows(told, side)
+        valid += [angles.valid.any(axis=1), hip, hip & knee]
+    flags = np.stack(valid, axis=1)
+    points = np.zeros((*flags.shape, 3))
+    for first in range(0, len(points), ROWS_AT_A_TIME):
+        some = slice(first, first + ROWS_AT_A_TIME)
+        points[some] = _leg_points(np.where(known, angles.value[some, :, 0], 0.0), anthropometry)
+    points[~flags] = 0.0
+    return Track(angles.times_ns, points, flags)
+
+
+def _leg_points(position: Array, anthropometry: Anthropometry) -> Array:
+    """(n, 6, 3) m of LEG_CENTRES for (n, 15) rad."""
+    from services.biomech.lower_body import LowerBodyModel
+
     model = LowerBodyModel(anthropometry)
-    points, valid = [], []
+    rotation, origin = leg_poses(position, anthropometry)
+    points = []
     for side in ("right", "left"):
         thigh, shank = (model.last_joint(Segment(f"{name}_{side}")) for name in ("thigh", "shank"))
         ankle = origin[:, shank] - anthropometry.shank_length_m * rotation[:, shank, :, 1]
         points += [origin[:, thigh], origin[:, shank], ankle]
-        hip, knee = (angles.valid[:, names.index(f"{name}_flexion_{side}")] for name in ("hip", "knee"))
-        leg = (hip if _follows(told, side) else np.zeros_like(hip), knee)
-        valid += [angles.valid.any(axis=1), leg[0], leg[0] & leg[1]]
-    flags = np.stack(valid, axis=1)
-    return Track(angles.times_ns, np.where(flags[..., None], np.stack(points, axis=1), 0.0), flags)
+    return np.stack(points, axis=1)
 
 
 def leg_poses(position: Array, anthropometry: Anthropometry) -> tuple[Array, Array]:

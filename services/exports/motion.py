@@ -1,7 +1,7 @@
 """Angles and joint centres of a session as arrays, and the same at even times."""
 
 from collections.abc import Iterable
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -11,7 +11,7 @@ from schemas.payload import Payload
 from schemas.session import SessionDescription
 from services.exports.errors import ExportError
 from services.exports.facts import freedoms_of
-from services.exports.parameters import LONGEST_STEP, MOST_SAMPLES, MOSTLY
+from services.exports.parameters import LONGEST_STEP, MOST_SAMPLES, MOSTLY, ROWS_AT_A_TIME
 
 Array = NDArray[np.float64]
 Times = NDArray[np.int64]
@@ -72,10 +72,9 @@ def gather_motion(payloads: Iterable[Payload]) -> Motion:
             if model not in (None, payload.model):
                 raise ExportError("joint_state.model", f"{model}, then {payload.model}", "export joint_angles.csv")
             model = payload.model
-            position = np.array(payload.position, dtype=np.float64)
-            angles.add(payload.captured_ns, position[..., None], payload.valid)
+            angles.add(payload.captured_ns, payload.position, payload.valid)
         elif isinstance(payload, JointCentres):
-            centres.add(payload.captured_ns, np.array(payload.position, dtype=np.float64), payload.seen)
+            centres.add(payload.captured_ns, payload.position, payload.seen)
     if model is None:
         raise ExportError("joint_state", "the session holds none", "run it to its first seconds of walking")
     freedoms_of(model)
@@ -168,28 +167,43 @@ def _hermite(track: Track, before: Times, after: Times, u: Array, step: Array) -
 
 
 class _Pieces:
-    """Batches of a track as they come."""
+    """Batches of a track as they come, kept in blocks: a message may be one sample, and an hour has 360 000."""
 
     def __init__(self) -> None:
         self.count = 0
-        self._times: list[Times] = []
-        self._values: list[Array] = []
-        self._valid: list[Flags] = []
+        self._blocks: list[Track] = []
+        self._times: list[int] = []
+        self._rows: list[list[Any]] = []
+        self._valid: list[list[bool]] = []
 
-    def add(self, captured_ns: list[int], value: Array, valid: list[bool]) -> None:
+    def add(self, captured_ns: list[int], rows: list[list[Any]], valid: list[bool]) -> None:
         self.count += len(captured_ns)
         if self.count > MOST_SAMPLES:
-            what = f"more than {MOST_SAMPLES} samples"
-            raise ExportError(
-                "joint_state", what, "export joint_angles.csv or mcap, which are written as they are read"
-            )
-        self._times.append(np.array(captured_ns, dtype=np.int64))
-        self._values.append(value)
-        self._valid.append(np.tile(np.array(valid, dtype=bool), (len(captured_ns), 1)))
+            next_step = "export joint_angles.csv or mcap, which are written as they are read"
+            raise ExportError("joint_state", f"more than {MOST_SAMPLES} samples", next_step)
+        self._times += captured_ns
+        self._rows += rows
+        self._valid += [valid] * len(captured_ns)
+        if len(self._times) >= ROWS_AT_A_TIME:
+            self._close_block()
 
     def track(self) -> Track:
         """All of it, in order of time, each time once."""
-        times, rising = np.unique(np.concatenate(self._times), return_index=True)
-        valid = np.concatenate(self._valid)[rising]
-        value = np.concatenate(self._values)[rising]
-        return Track(times, np.where(valid[..., None], value, 0.0), valid)
+        if self._times:
+            self._close_block()
+        times = np.concatenate([block.times_ns for block in self._blocks])
+        value = np.concatenate([block.value for block in self._blocks])
+        valid = np.concatenate([block.valid for block in self._blocks])
+        self._blocks.clear()
+        if np.all(np.diff(times) > 0):
+            return Track(times, value, valid)
+        times, rising = np.unique(times, return_index=True)
+        return Track(times, value[rising], valid[rising])
+
+    def _close_block(self) -> None:
+        value = np.array(self._rows, dtype=np.float64)
+        value = value[..., None] if value.ndim == 2 else value
+        valid = np.array(self._valid, dtype=bool)
+        value[~valid] = 0.0
+        self._blocks.append(Track(np.array(self._times, dtype=np.int64), value, valid))
+        self._times, self._rows, self._valid = [], [], []

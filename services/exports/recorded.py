@@ -25,6 +25,8 @@ class RecordedSession:
         self._recording = open_recording(folder, derived_version)
         derived = [span for span in self._recording.chunks if span.path.name.startswith("derived")]
         self._recording.chunks = derived
+        names = (parse_file_name(span.path.name) for span in derived)
+        self._version = next((name.version for name in names if name is not None), None)
         self._told = told or (lambda _: None)
         spans = (span for span in self._recording.ledger.spans() if span.count > span.ended)
         self._signals = frozenset(span.stream.partition("/")[0] for span in spans)
@@ -33,6 +35,11 @@ class RecordedSession:
     def description(self) -> SessionDescription:
         """Who measured what."""
         return self._recording.description
+
+    @property
+    def software(self) -> str | None:
+        """What computed the messages, as the names of the derived files say."""
+        return None if self._version is None else f"ambula {self._version}"
 
     @property
     def signals(self) -> frozenset[str]:

@@ -146,7 +146,7 @@ def walk(about, calibration):
     messages += [(GAIT_EVENT, event) for event in contacts(20)]
     messages += [(STRIDE, a_stride()), (METRICS, some_metrics())]
     messages += [(TASK_PHASE, a_phase(None)), (TASK_PHASE, a_phase(START_NS + 10**9)), (REPETITION, a_repetition())]
-    return HeldSession(about, messages)
+    return HeldSession(about, messages, "ambula 0.0.1+abc")
 
 
 @pytest.fixture

@@ -7,7 +7,6 @@ from services.biomech.lower_body import LowerBodyModel
 from services.biomech.pinocchio_model import PinocchioBody
 from services.exports.joint_positions import AT_PELVIS, IN_ROOM, LEG_CENTRES, joint_positions, leg_poses, rotation_about
 from services.exports.motion import gather_motion
-from services.exports.session import events_among
 
 
 def test_legs_stand_where_pinocchio_puts_them(about, made):
@@ -65,8 +64,3 @@ def test_a_camera_tells_its_own(seen):
 def test_rotations_turn_by_the_right_hand(axis, moved):
     R = rotation_about(axis, np.array([np.pi / 2]))[0]
     np.testing.assert_allclose(R @ [1.0, 0.0, 0.0], moved, atol=1e-15)
-
-
-def test_events_come_in_order_of_time(made):
-    events = made.contacts(6)
-    assert events_among([events[3], made.a_stride(), events[0]]) == [events[0], events[3]]

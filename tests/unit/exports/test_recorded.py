@@ -35,7 +35,7 @@ def folder(messages, recorded, tape):
 
 
 def test_files_are_those_of_the_session_in_memory(folder, messages, description):
-    stored, held = RecordedSession(folder), HeldSession(description, messages)
+    stored, held = RecordedSession(folder), HeldSession(description, messages, "ambula 0.1.0")
     assert stored.description == description
     for name in ("events.csv", "joint_angles.csv", "c3d", "mot", "trc"):
         of_both = []
