@@ -2,6 +2,7 @@
 
 import json
 import time
+import urllib.error
 import urllib.request
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -39,12 +40,13 @@ class Shown:
 
 def visits(url: str, data: Path, patience_s: float) -> Shown:
     """Walk all visits as fast as the services follow, then move them apart in the database at `data`."""
+    _until_answered(url, patience_s)
     code = str(_ask(url, "patients", PERSON)["code"])
     for date, kind in TREATMENTS:
         _ask(url, f"patients/{code}/treatments", {"date": date, "kind": kind})
     walks = [_begin(url, code, speed) for speed in SPEEDS]
     end = time.monotonic() + patience_s
-    while any(_ask(url, f"sessions/{walk}")["state"] not in DONE for walk in walks):
+    while not all(_is_kept(url, walk) for walk in walks):
         if time.monotonic() > end:
             raise TimeoutError(f"the walks did not end within {patience_s:.0f} s")
         time.sleep(0.5)
@@ -52,9 +54,28 @@ def visits(url: str, data: Path, patience_s: float) -> Shown:
     return Shown(code, walks)
 
 
+def _until_answered(url: str, patience_s: float) -> None:
+    end = time.monotonic() + patience_s
+    while True:
+        try:
+            _ask(url, "patients")
+        except urllib.error.URLError:
+            if time.monotonic() > end:
+                raise
+            time.sleep(0.2)
+        else:
+            return
+
+
 def _begin(url: str, code: str, speed: float) -> str:
     wish = {"source": WALK.format(speed=speed), "speed": None, "patient": code, "conditions": SAID}
     return str(_ask(url, "sessions", wish)["id"])
+
+
+def _is_kept(url: str, walk: str) -> bool:
+    """Over, and sealed by the archive, so that a report can name its recording."""
+    files = _ask(url, f"sessions/{walk}/recordings")
+    return _ask(url, f"sessions/{walk}")["state"] in DONE and bool(files) and all(each["sha256"] for each in files)
 
 
 def _move_apart(data: Path, walks: Sequence[str]) -> None:
@@ -67,9 +88,8 @@ def _move_apart(data: Path, walks: Sequence[str]) -> None:
         database.close()
 
 
-def _ask(url: str, path: str, body: dict[str, Any] | None = None) -> dict[str, Any]:
+def _ask(url: str, path: str, body: dict[str, Any] | None = None) -> Any:
     data = None if body is None else json.dumps(body).encode()
     request = urllib.request.Request(f"{url}/v1/{path}", data, {"Content-Type": "application/json"})
     with urllib.request.urlopen(request, timeout=60) as answer:
-        told: dict[str, Any] = json.load(answer)
-    return told
+        return json.load(answer)

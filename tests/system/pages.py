@@ -4,6 +4,7 @@ import contextlib
 import json
 import os
 import socket
+import time
 import urllib.error
 import urllib.request
 from collections.abc import Callable, Iterator, Sequence
@@ -72,7 +73,22 @@ def open_site(recordings: Path, services: Sequence[str] = SERVICES) -> Iterator[
     settings = BusSettings(router=f"tcp/127.0.0.1:{free_port()}")
     with Supervisor(services, settings, environment=environment) as supervisor:
         supervisor.wait_until_ready(timeout_s=180)
-        yield Site(f"http://127.0.0.1:{port}", supervisor)
+        url = f"http://127.0.0.1:{port}"
+        until_answered(url)
+        yield Site(url, supervisor)
+
+
+def until_answered(url: str) -> None:
+    """Wait for the first answer: a service may be on the bus before its port is open."""
+    end = time.monotonic() + PATIENCE_S
+    while True:
+        try:
+            urllib.request.urlopen(f"{url}/v1/patients", timeout=30).close()
+        except urllib.error.URLError:
+            assert time.monotonic() < end, "the gateway does not answer"
+            time.sleep(0.1)
+        else:
+            return
 
 
 def end_all(url: str) -> None:
