@@ -10,8 +10,8 @@ from schemas.metrics import DoubtKind
 class SharedErrorParameters:
     """Standard deviations of what all strides of a session have alike.
 
-    Where no other source stands, chosen on 32 synthetic patients (seeds 2001 to 2032, bodies measured to 3 %, soft
-    tissue) so that their truth lies within the intervals; `ambula bench metrics coverage` scores others.
+    Where no other source stands, chosen on synthetic patients (seeds from 2001 on, bodies measured to 3 %, soft tissue)
+    so that their truth lies within the intervals; `ambula bench metrics coverage` scores others.
     """
 
     relative_length: Mapping[str, float] = field(
@@ -23,9 +23,9 @@ class SharedErrorParameters:
     """of the filter's own deviation that is the same in every stride."""
     contact_bias_s: float = 0.02
     """s by which initial contacts are early or late."""
-    toe_off_bias_s: float = 0.03
+    toe_off_bias_s: float = 0.045
     """s by which toe-offs are."""
-    foot_difference_s: float = 0.009
+    foot_difference_s: float = 0.0095
     """s by which one foot's contacts are later than the other's."""
     relative_stride_time: float = 0.002
     """of times from contact to contact: a clock, and a walk of seconds for how somebody walks."""
@@ -35,7 +35,7 @@ class SharedErrorParameters:
     """the same of toe-offs."""
     length_jitter: float = 0.025
     """m, or m/s, of scatter that steps have because they are measured."""
-    circumduction_m: float = 0.009
+    circumduction_m: float = 0.01
     """m."""
     width_m: float = 0.02
     """m of a camera's step width (proposal; no synthetic patient walks before a camera)."""
@@ -66,10 +66,10 @@ class SharedErrorParameters:
         default_factory=lambda: {
             "step_length": 0.065,
             "step_time": 0.035,
-            "stance_time": 0.025,
-            "swing_time": 0.065,
-            "single_support_time": 0.065,
-            "knee_flexion_range": 0.08,
+            "stance_time": 0.055,
+            "swing_time": 0.11,
+            "single_support_time": 0.1,
+            "knee_flexion_range": 0.07,
             "hip_flexion_range": 0.03,
         }
     )

@@ -22,7 +22,7 @@ _EVENT_PAIRS = {
     "single_support": 1.0,
     "initial_double_support": 1.0,
     "terminal_double_support": 1.0,
-    "double_support": 2.0,
+    "double_support": math.sqrt(2.0),
 }
 _STEPS_IN = {"step_length": 1.0, "stride_length": math.sqrt(2.0), "walking_speed": math.sqrt(2.0)}
 """How many times the deviation of one step is in it: a stride is the sum of two that err independently."""

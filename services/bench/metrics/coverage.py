@@ -19,7 +19,7 @@ SPEEDS: dict[str, tuple[float, ...]] = {
 """m/s, by kind of gait."""
 FIRST_SEED, TUNED_SEED = 3001, 2001
 """Persons that are scored; those from TUNED_SEED on have set the parameters."""
-PERSONS = 2
+PERSONS = 1
 """Of each kind at each speed."""
 SETTING = "duration=40&tape=0.03&soft_tissue=0.02"
 ESTIMATOR = "rhythmic_ekf"
