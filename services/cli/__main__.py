@@ -15,6 +15,7 @@ from services.cli.conditions import Conditioned, read_conditions
 from services.cli.console import err, out, told
 from services.cli.export import export
 from services.cli.options import Asked, Estimator, Rhythm, Source, Straight, Walkway
+from services.cli.report import report
 from services.cli.reprocess.command import reprocess
 from services.cli.send_skeletons import send_skeletons
 from services.cli.tune import tune
@@ -174,6 +175,7 @@ def synth(
 
 app.command()(send_skeletons)
 app.command()(export)
+app.command()(report)
 app.command()(reprocess)
 
 
