@@ -1,6 +1,7 @@
 """A walking test: the contacts and strides of gait, and the phases that they and the heading make."""
 
 import math
+from dataclasses import replace
 
 from schemas.gait import GaitEvent, Stride
 from schemas.kinematics import SegmentMotion
@@ -38,6 +39,10 @@ class WalkingTestSegmenter:
         gait: SegmentationParameters,
         parameters: WalkingTestParameters = DEFAULTS,
     ) -> None:
+        sees_both = EventSource.NOTHING not in session_event_sources(description).values()
+        if not sees_both:
+            # Of one leg every second step is seen.
+            parameters = replace(parameters, rest_s=2 * parameters.rest_s)
         self._parameters = parameters
         self._feet = Feet(parameters, description.anthropometry)
         self._gait = GaitSegmenter(description, gait)
@@ -45,7 +50,7 @@ class WalkingTestSegmenter:
         used = used_segments(description)
         self._shanks = used & {Segment.SHANK_LEFT, Segment.SHANK_RIGHT}
         self._trail, self._trace = StepTrail(parameters), Trace(parameters.memory_s)
-        self._test = _test(description, parameters, self._trail)
+        self._test = _test(description, parameters, self._trail, sees_both=sees_both)
         self._last_ns: int | None = None
         self._lost_ns = 0
         """Since the last contact."""
@@ -150,9 +155,9 @@ class WalkingTestSegmenter:
         self._last_ns, self._lost_ns, self._heading = state["last_ns"], state["lost_ns"], state["heading"]
 
 
-def _test(description: SessionDescription, parameters: WalkingTestParameters, trail: StepTrail) -> WalkingTest:
-    sources = session_event_sources(description).values()
-    sees_both = all(source is not EventSource.NOTHING for source in sources)
+def _test(
+    description: SessionDescription, parameters: WalkingTestParameters, trail: StepTrail, *, sees_both: bool
+) -> WalkingTest:
     if description.task is Task.SIX_MINUTE_WALK:
         said = description.conditions.test_duration_s
         return SixMinutes(parameters, trail, said, sees_both=sees_both)
