@@ -61,13 +61,13 @@ def _final_metrics(row: SessionRow) -> SessionMetrics:
     if row.state in (SessionState.CREATED, SessionState.LIVE):
         step = f"Stop it with POST /v1/sessions/{row.id}/stop, or wait until it has ended."
         raise Problem(HTTPStatus.CONFLICT, f"Session {row.id} still runs; a report needs its final metrics.", step)
-    step = f"Compute them from the recording with `ambula reprocess {row.id}`, then ask again."
+    step = f"Compute them from the recording with `ambula reprocess {row.id} --store`, then ask again."
     raise Problem(HTTPStatus.CONFLICT, f"Session {row.id} has no final metrics.", step)
 
 
 def _description(row: SessionRow) -> SessionDescription:
     if row.description is None:
-        step = f"Compute it anew from the recording with `ambula reprocess {row.id}`, then ask again."
+        step = f"Compute it anew from the recording with `ambula reprocess {row.id} --store`, then ask again."
         raise Problem(HTTPStatus.CONFLICT, f"Nothing is stored of how session {row.id} was done.", step)
     return SessionDescription.model_validate(row.description)
 
