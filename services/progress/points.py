@@ -42,23 +42,49 @@ class Point:
         return Estimate(self.value, self.low, self.high, self.repeated)
 
 
-def point(visit: Visit, trial: Trial, measure: Measure, metric: Metric, baseline: Trial | None) -> Point:
-    """What a session says of a measure, set against the session that progress counts from."""
+@dataclass(frozen=True, slots=True)
+class Sitting:
+    """One trial ready to be asked for every measure: its numbers by name and side, and what is unlike the baseline."""
+
+    visit: Visit
+    trial: Trial
+    numbers: dict[tuple[str, str | None], Metric]
+    software: str
+    unlike: list[Rule]
+    unlike_angles: list[Rule]
+
+
+def sitting(visit: Visit, trial: Trial, baseline: Trial | None) -> Sitting:
+    """A trial with final metrics, set against the one that progress counts from."""
     assert trial.metrics is not None
+    missing = unsaid(trial)
+    unlike, unlike_angles = (
+        [*missing, *([] if baseline is None else differences(trial, baseline, unit))] for unit in ("", "rad")
+    )
+    numbers = {(metric.name, metric.side): metric for metric in trial.metrics.metrics}
+    return Sitting(visit, trial, numbers, trial.metrics.software, unlike, unlike_angles)
+
+
+def point(sitting: Sitting, measure: Measure, side: str | None) -> Point | None:
+    """What a trial says of a measure; null where it does not know such a one."""
+    metric = sitting.numbers.get((measure.name, side))
+    if metric is None:
+        return None
     low, high = interval(metric)
-    rules = _of_itself(metric, measure, low) + unsaid(trial)
-    if baseline is not None:
-        rules += differences(trial, baseline, metric.unit)
+    rules = [
+        *_of_itself(metric, measure, low),
+        *(sitting.unlike_angles if metric.unit == "rad" else sitting.unlike),
+    ]
     return Point(
-        visit=visit.number,
-        day=visit.day,
-        session=trial.session,
+        visit=sitting.visit.number,
+        day=sitting.visit.day,
+        session=sitting.trial.session,
         value=metric.value,
         low=low,
         high=high,
         grade=metric.grade,
         strides=metric.strides,
-        software=trial.metrics.software,
+        software=sitting.software,
         comparable=not rules,
         rules=rules,
         repeated=0.0 if low is None or high is None else repeated(metric, (high - low) / 2),

@@ -1,6 +1,6 @@
 """All that is said of a patient's progress, from visits and baseline."""
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Collection, Mapping, Sequence
 from dataclasses import dataclass
 
 from schemas.conditions import SpeedInstruction
@@ -9,14 +9,16 @@ from schemas.vocabulary import Side, Task
 from services.progress.baseline import Baseline, TestBaseline
 from services.progress.curves import CurveVisit, curve_visits
 from services.progress.likeness import differences, unsaid
-from services.progress.measures import is_followed, measure_of, place
-from services.progress.points import Point, point
+from services.progress.measures import Measure, is_followed, measure_of, place
+from services.progress.points import Point, Sitting, point, sitting
 from services.progress.recovery import OTHER_MOTIONS, JointRecovery, joint_recovery
 from services.progress.rules import Rule, RuleCode, rule
 from services.progress.series import Frame, Series, series
 from services.progress.visits import Trial, Visit, numbers_of_sessions
 
 Test = tuple[Task, SpeedInstruction | None]
+BESIDE_JOINTS = ("walking_speed", *OTHER_MOTIONS)
+"""Measures that the words on joints rest on."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -47,10 +49,16 @@ class Person:
     """Reference sets that are loaded, by name."""
 
 
-def progress(visits: Sequence[Visit], baseline: Baseline | None, person: Person, task: Task | None = None) -> Progress:
-    """Everything, or that of one task."""
+def progress(
+    visits: Sequence[Visit],
+    baseline: Baseline | None,
+    person: Person,
+    task: Task | None = None,
+    measures: Collection[str] | None = None,
+) -> Progress:
+    """Everything, or that of one task, or series of some measures alone."""
     found = [test for test in _tests(visits) if task is None or test[0] is task]
-    told = [_of_test(test, visits, baseline, person) for test in found]
+    told = [_of_test(test, visits, baseline, person, measures) for test in found]
     return Progress(
         [each for one in told for each in one.series],
         [each for one in told for each in one.joints],
@@ -68,17 +76,24 @@ def _tests(visits: Sequence[Visit]) -> list[Test]:
     return list(dict.fromkeys(done))
 
 
-def _of_test(test: Test, visits: Sequence[Visit], baseline: Baseline | None, person: Person) -> Progress:
+def _of_test(
+    test: Test, visits: Sequence[Visit], baseline: Baseline | None, person: Person, wanted: Collection[str] | None
+) -> Progress:
     trials = _trials(test, visits)
     base = None if baseline is None else baseline.test(*test)
     first = None if base is None else next((t for _, t in trials if t.session == base.sessions[0]), None)
     frame = _frame(test, visits, baseline, base if first else None, person)
-    found = [
-        series(frame, measure_of(name), side, unit, _points(trials, name, side, first))
-        for name, side, unit in _measures(trials)
-    ]
+    sittings = [sitting(visit, trial, first) for visit, trial in trials]
+
+    def told(names: Collection[str] | None) -> list[Series]:
+        return [
+            series(frame, measure_of(name), side, unit, _points(sittings, measure_of(name), side))
+            for name, side, unit in _measures(sittings, names)
+        ]
+
     alike = [] if first is None else _alike(trials, first, frame.start)
-    return Progress(found, _joints(alike, found, person), curve_visits(alike))
+    joints = _joints(alike, told(BESIDE_JOINTS), person)
+    return Progress(told(wanted), joints, curve_visits(alike))
 
 
 def _trials(test: Test, visits: Sequence[Visit]) -> list[tuple[Visit, Trial]]:
@@ -91,23 +106,20 @@ def _trials(test: Test, visits: Sequence[Visit]) -> list[tuple[Visit, Trial]]:
     ]
 
 
-def _measures(trials: Sequence[tuple[Visit, Trial]]) -> list[tuple[str, str | None, str]]:
+def _measures(sittings: Sequence[Sitting], wanted: Collection[str] | None) -> list[tuple[str, str | None, str]]:
     """Name, side and unit of every measure that any of the trials has, in the order of an answer."""
     found = dict.fromkeys(
         (metric.name, metric.side, metric.unit)
-        for _, trial in trials
-        if trial.metrics is not None
-        for metric in trial.metrics.metrics
-        if is_followed(metric.name)
+        for each in sittings
+        for metric in each.numbers.values()
+        if is_followed(metric.name) and (wanted is None or metric.name in wanted)
     )
     return sorted(found, key=lambda each: place(each[0]))
 
 
-def _points(trials: Sequence[tuple[Visit, Trial]], name: str, side: str | None, baseline: Trial | None) -> list[Point]:
-    told = ((visit, trial, trial.metric(name, side)) for visit, trial in trials)
-    return [
-        point(visit, trial, measure_of(name), metric, baseline) for visit, trial, metric in told if metric is not None
-    ]
+def _points(sittings: Sequence[Sitting], measure: Measure, side: str | None) -> list[Point]:
+    told = (point(each, measure, side) for each in sittings)
+    return [each for each in told if each is not None]
 
 
 def _frame(

@@ -4,6 +4,7 @@ from http import HTTPStatus
 from typing import Annotated
 
 from fastapi import APIRouter, Query
+from pydantic import StringConstraints
 from sqlalchemy.orm import Session
 
 from schemas.population import Population
@@ -22,6 +23,7 @@ from services.progress.visits import Visit, numbers_of_sessions
 
 router = APIRouter(prefix="/v1/patients", tags=["progress"])
 
+Measure = Annotated[str, StringConstraints(pattern="^[a-z0-9_]{1,64}$")]
 NEEDS = "A usable visit has final metrics, and says aid, orthosis, footwear and how fast the person was asked to walk."
 
 
@@ -30,24 +32,31 @@ def read_progress(
     code: PatientCode,
     gateway: Context,
     task: Annotated[Task | None, Query(description="only this task")] = None,
+    measure: Annotated[
+        list[Measure] | None, Query(max_length=50, description="only series of these measures; may be repeated")
+    ] = None,
 ) -> ProgressOut:
     """Whether the patient really changed: each measure of each test over the visits, with its verdict and the rule.
 
     The first usable visit becomes the baseline when none was chosen; its thresholds are frozen then.
     """
     with gateway.database.transaction() as database:
-        _, found = patient_progress(database, gateway, code, task)
+        _, found = patient_progress(database, gateway, code, task, measure)
     return shapes.progress_out(code, found)
 
 
 def patient_progress(
-    database: Session, gateway: Gateway, code: str, task: Task | None = None
+    database: Session,
+    gateway: Gateway,
+    code: str,
+    task: Task | None = None,
+    measures: list[str] | None = None,
 ) -> tuple[list[Visit], Progress]:
     """Visits and progress of a patient. Raises a 404 problem when there is none of that code."""
     patient, visits = _known(database, code)
     uses = reference_uses(gateway)
     baseline = records.frozen_baseline(database, patient, visits, _versions(uses))
-    return visits, progress(visits, baseline, _person(patient, uses), task)
+    return visits, progress(visits, baseline, _person(patient, uses), task, measures)
 
 
 @router.get("/{code}/baseline", responses=documented(HTTPStatus.NOT_FOUND))

@@ -53,9 +53,14 @@ def test_joints_stand_beside_speed(client, code):
     assert (joint["joint"], joint["word"], len(joint["visits"])) == ("knee_flexion", "recovery", 3)
 
 
-def test_one_task_can_be_asked_for(client, code):
+def test_one_task_or_some_measures_can_be_asked_for(client, code):
     assert client.get(f"/v1/patients/{code}/progress", params={"task": "timed_up_and_go"}).json()["series"] == []
     assert speed_of(client, code, task="walk")["verdict"] == "real_change"
+    chosen = client.get(f"/v1/patients/{code}/progress", params={"measure": ["walking_speed", "cadence"]}).json()
+    assert [each["measure"] for each in chosen["series"]] == ["walking_speed"]
+    none = client.get(f"/v1/patients/{code}/progress", params={"measure": "cadence"}).json()
+    assert none["series"] == []
+    assert none["joint_recovery"][0]["word"] == "recovery"
     wrong = client.get(f"/v1/patients/{code}/progress", params={"task": "dance"})
     assert wrong.status_code == HTTPStatus.UNPROCESSABLE_ENTITY
 
