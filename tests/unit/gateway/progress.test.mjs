@@ -1,6 +1,6 @@
 // A patient's progress as pages put it: verdicts and rules in sentences, charts from what the API tells.
 import assert from "node:assert/strict";
-import { readFileSync } from "node:fs";
+import { readFileSync, readdirSync } from "node:fs";
 import { test } from "node:test";
 
 const sources = new URL("../../../services/gateway/web/src/", import.meta.url);
@@ -46,6 +46,15 @@ test("verdicts have the three words and no others", () => {
     Object.values(VERDICTS).map(({ word }) => word),
     ["real change", "within measurement error", "cannot tell"],
   );
+});
+
+test("no page ever calls anybody normal or abnormal", () => {
+  const files = readdirSync(sources).filter((name) => name.endsWith(".js"));
+  assert.ok(files.length > 40);
+  for (const name of files) {
+    const code = readFileSync(new URL(name, sources), "utf8").replaceAll(/^\s*(\/\/|\/?\*).*$/gm, "");
+    assert.doesNotMatch(code, /["'`][^"'`\n]*\b(ab)?normal\b[^"'`\n]*["'`]/i, name);
+  }
 });
 
 test("every rule, verdict, word and treatment of the services has a sentence here", () => {
