@@ -4,7 +4,7 @@ from collections.abc import Iterable
 
 from schemas.metrics import Doubt, DoubtKind, Metric, TrustGrade
 from schemas.vocabulary import Side
-from services.progress.rules import Rule, RuleCode
+from services.progress.rules import Parameter, Rule, RuleCode
 from services.report.catalogue import Catalogue
 from services.report.units import Measured
 
@@ -12,6 +12,9 @@ _SHARES = (
     DoubtKind.COVERAGE, DoubtKind.REJECTED_CYCLES, DoubtKind.LOSS, DoubtKind.LATE, DoubtKind.NOT_LOCKED,
 )  # fmt: skip
 _MEASURE_PARAMETERS = ("change", "low", "high", "mdc", "limit", "half_interval", "smallest")
+
+
+_SIGNED = ("change", "low", "high", "speed_change", "motion_change", "distance_change")
 
 
 def grade_word(words: Catalogue, grade: TrustGrade | None) -> str:
@@ -77,16 +80,28 @@ def rule_sentence(words: Catalogue, rule: Rule, measured: Measured) -> str:
     )
 
 
-def _shown(words: Catalogue, name: str, value: float | int | str | None, rule: Rule, measured: Measured) -> str:
+def _shown(words: Catalogue, name: str, value: Parameter, rule: Rule, measured: Measured) -> str:
     if value is None:
         return words.text("header.not_said")
-    if name in _MEASURE_PARAMETERS and not isinstance(value, str):
-        return measured.full(value, signed=name in ("change", "low", "high") and rule.code is not RuleCode.NO_INTERVAL)
-    if name == "speed_change" and not isinstance(value, str):
-        return Measured(words, "m/s", "walking_speed").full(value, signed=True)
-    if name in ("distance_change", "motion_change", "low", "high") and not isinstance(value, str):
-        return Measured(words, "rad", "side_distance").full(value, signed=True)
-    return words.number(value, 2) if isinstance(value, float) else _word(words, str(value))
+    if isinstance(value, str):
+        return _word(words, value)
+    how = _measured(words, name, rule, measured)
+    if how is not None:
+        return how.full(value, signed=name in _SIGNED)
+    return words.number(value, 2 if isinstance(value, float) else 0)
+
+
+def _measured(words: Catalogue, name: str, rule: Rule, measured: Measured) -> Measured | None:
+    """In what a parameter is shown; None for a bare number."""
+    speed = Measured(words, "m/s", "walking_speed")
+    if name == "speed_change" or (rule.code is RuleCode.SPEED_NOT_UP and name in ("low", "high")):
+        return speed
+    if name == "motion_change":
+        motion = str(rule.parameters["motion"])
+        return Measured(words, "m" if motion == "circumduction" else "rad", motion)
+    if name == "distance_change":
+        return Measured(words, "rad", "side_distance")
+    return measured if name in _MEASURE_PARAMETERS else None
 
 
 def _word(words: Catalogue, value: str) -> str:
