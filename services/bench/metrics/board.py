@@ -6,7 +6,7 @@ from typing import NamedTuple
 
 from rich.progress import Progress
 
-from services.bench.metrics import coverage, exports, fhir, patients, report_pages
+from services.bench.metrics import coverage, exports, fhir, patients, report_pages, verdicts
 from services.bench.report import Section, report_text, write_report
 from services.bench.scoreboard import Row, Scoreboard
 from services.ingest.errors import MissingFile
@@ -25,6 +25,7 @@ class Part(NamedTuple):
 SECTIONS: dict[str, Part] = {
     "patients": Part(patients.patients_section, patients.STEPS),
     "coverage": Part(coverage.coverage_section, coverage.STEPS),
+    "verdicts": Part(verdicts.verdicts_section, verdicts.STEPS),
     "report": Part(report_pages.report_section, report_pages.STEPS),
     "exports": Part(exports.run, exports.STEPS),
     "fhir": Part(fhir.fhir_section, fhir.STEPS),
