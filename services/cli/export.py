@@ -79,7 +79,7 @@ def _model(name: str) -> OpenSimModel:
     """By name, or from a file. Raises ExportError, OSError."""
     path = Path(name)
     if path.suffix.lower() == ".osim":
-        return model_from_file(path.name, path.read_text(encoding="utf-8"))
+        return model_from_file(path.name, path.read_text(encoding="utf-8", errors="replace"))
     return known_model(name)
 
 

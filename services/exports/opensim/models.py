@@ -3,6 +3,7 @@
 `knee_angle_r` is flexion in Rajagopal's model (0 to 2.094 rad) and extension in gait10dof18musc (-2.094 to 0.175).
 """
 
+import math
 import xml.etree.ElementTree as ElementTree
 from collections.abc import Mapping
 from typing import NamedTuple
@@ -80,10 +81,20 @@ def model_from_file(name: str, text: str) -> OpenSimModel:
         raise ExportError("model", f"{name} is not XML: {error}", "give an .osim file") from error
     ranges = {}
     for coordinate in root.iter("Coordinate"):
-        limits = (coordinate.findtext("range") or "").split()
-        if "name" in coordinate.attrib and len(limits) == 2:
-            ranges[coordinate.attrib["name"]] = (float(limits[0]), float(limits[1]))
+        if "name" in coordinate.attrib:
+            ranges[coordinate.attrib["name"]] = _range(coordinate.attrib["name"], coordinate.findtext("range"))
     return model_of(name, ranges, tuple(rotation for rotation in PELVIS if rotation in ranges))
+
+
+def _range(name: str, text: str | None) -> Range:
+    """Two numbers. A coordinate without a range may go anywhere. Raises ExportError."""
+    if text is None:
+        return (-math.inf, math.inf)
+    try:
+        low, high = (float(word) for word in text.split())
+    except ValueError as error:
+        raise ExportError(f"model.{name}", f"its range is {text.strip()!r}", "give two numbers in rad") from error
+    return low, high
 
 
 def model_of(name: str, ranges: Mapping[str, Range], pelvis: tuple[str, ...]) -> OpenSimModel:
@@ -106,7 +117,7 @@ def sign_in(coordinate: str, freedom: str, limits: Range) -> int:
     if freedom not in OURS:
         return 1
     middle = (limits[0] + limits[1]) / 2.0
-    if abs(middle) < _CLEAR:
+    if not abs(middle) >= _CLEAR:
         what = f"its range {limits[0]:g} to {limits[1]:g} rad does not tell which way is flexion"
         raise ExportError(f"model.{coordinate}", what, f"use {' or '.join(RANGES)}")
     ours = sum(OURS[freedom]) / 2.0

@@ -45,6 +45,17 @@ def test_a_range_that_does_not_tell_is_refused():
         model_from_file("mine.osim", OSIM.format(low=-2, high=2))
 
 
+def test_a_range_that_is_no_range_is_refused():
+    with pytest.raises(ExportError, match=r"model.knee_angle_r: its range is 'wide 2'; give two numbers in rad"):
+        model_from_file("mine.osim", OSIM.format(low="wide", high=2))
+
+
+def test_a_knee_without_a_range_is_refused():
+    text = OSIM.replace("<range>{low} {high}</range>", "")
+    with pytest.raises(ExportError, match=r"does not tell which way is flexion"):
+        model_from_file("mine.osim", text)
+
+
 @pytest.mark.parametrize("limits", [(-1.0, 1.0), (-1.57, 1.57)])
 def test_the_other_angles_have_one_sign_everywhere(limits):
     assert sign_in("hip_rotation_r", "hip_internal_rotation", limits) == 1
