@@ -27,6 +27,7 @@ class Basis(StrEnum):
     KNEE = "knee"
     ANKLE = "ankle"
     WIDTH = "width"
+    TRUNK = "trunk"
     RHYTHM = "rhythm"
     TASK = "task"
     COUNT = "count"

@@ -55,7 +55,7 @@ class Inputs:
                 )
             case Basis.HIP:
                 return self._worn(Segment.PELVIS, leg[0])
-            case Basis.PELVIS:
+            case Basis.PELVIS | Basis.TRUNK:
                 return self._worn(Segment.PELVIS)
             case Basis.WIDTH | Basis.ANKLE:
                 return self._camera

@@ -2,11 +2,21 @@
 
 from schemas.gait import Stride
 from schemas.health import Rejection
+from schemas.kinematics import SegmentMotion
 from schemas.metrics import Metric, SessionMetrics
 from schemas.quality import DataQuality
 from schemas.rhythm import LearnedRhythm
 from schemas.session import SessionDescription
-from schemas.signals import DATA_QUALITY, LEARNED_RHYTHM, METRICS, REPETITION, STRIDE, TASK_PHASE, Signal
+from schemas.signals import (
+    DATA_QUALITY,
+    LEARNED_RHYTHM,
+    METRICS,
+    REPETITION,
+    SEGMENT_MOTION,
+    STRIDE,
+    TASK_PHASE,
+    Signal,
+)
 from schemas.tasks import Repetition, TaskPhase
 from schemas.vocabulary import Segment, Side, Task
 from services.biomech.event_sources import worn_segments
@@ -20,6 +30,7 @@ from services.metrics.repetitions import RepetitionTotals
 from services.metrics.rhythms import rhythm_metrics
 from services.metrics.session_totals import SessionTotals
 from services.metrics.shared_errors import SharedErrors
+from services.metrics.trunk import trunk_metrics, trunk_regularity
 from services.metrics.trust import Trust
 from services.metrics.walking_tests import TimedTestTotals, timed_test_totals
 
@@ -37,7 +48,7 @@ class MetricsNode:
     """
 
     outputs: tuple[Signal, ...] = (METRICS,)
-    streams: tuple[Stream, ...] = (
+    _always: tuple[Stream, ...] = (
         Stream(STRIDE, "segmentation"),
         Stream(LEARNED_RHYTHM, "estimation"),
         Stream(DATA_QUALITY, "estimation"),
@@ -56,6 +67,7 @@ class MetricsNode:
         self._quality: DataQuality | None = None
         self._totals = _totals(description, parameters)
         self._trust = Trust(description)
+        self._trunk = trunk_regularity(description, parameters.trunk)
         self._is_exercise = description.task is Task.KNEE_FLEXION or description.task in SIDES_OF
         self._walks = description.task not in SIDES_OF
         self._repetitions = _repetitions(description, parameters)
@@ -64,6 +76,11 @@ class MetricsNode:
         self._captured_ns = 0
         self._repeated_ns = 0
         self._tested_ns = 0
+
+    @property
+    def streams(self) -> tuple[Stream, ...]:
+        """The motion of the lower back, too, where it is all that tells the gait."""
+        return self._always if self._trunk is None else (*self._always, Stream(SEGMENT_MOTION, "estimation"))
 
     def step(self, message: Message) -> list[Output]:
         """Take a stride, a repetition, a phase, or what the rhythm has learned so far."""
@@ -76,6 +93,8 @@ class MetricsNode:
             self._learned = stride
         if isinstance(stride, DataQuality):
             self._quality = stride
+        if isinstance(stride, SegmentMotion) and self._trunk is not None:
+            self._trunk.take(stride)
         if not isinstance(stride, Stride) or not self._walks:
             return []
         self._captured_ns = max(self._captured_ns, message.envelope.captured_ns)
@@ -125,10 +144,12 @@ class MetricsNode:
     def _metrics(self, *, final: bool) -> list[Metric]:
         """Every row that the session has, before anybody has judged it."""
         attempts = self._attempts
+        walking = [] if self._is_exercise else self._totals.metrics(self._parameters)
         return [
             *self._repetitions.metrics(),
             *([] if attempts is None else attempts.metrics(final=final)),
-            *([] if self._is_exercise else self._totals.metrics(self._parameters)),
+            *walking,
+            *([] if self._trunk is None or not final else trunk_metrics(self._trunk, walking)),
             *(rhythm_metrics(self._learned if final else None, self._known, final=final) if self._walks else []),
         ]
 
@@ -147,6 +168,7 @@ class MetricsNode:
             "attempts": None if self._attempts is None else self._attempts.snapshot(),
             "tested_ns": self._tested_ns,
             "learned": None if self._learned is None else self._learned.model_dump(mode="json"),
+            "trunk": None if self._trunk is None else self._trunk.snapshot(),
             "quality": None if self._quality is None else self._quality.model_dump(mode="json"),
         }
 
@@ -159,6 +181,8 @@ class MetricsNode:
         self._repeated_ns, self._tested_ns = state["repeated_ns"], state["tested_ns"]
         if self._attempts is not None:
             self._attempts.restore(state["attempts"])
+        if self._trunk is not None:
+            self._trunk.restore(state["trunk"])
         learned, quality = state["learned"], state["quality"]
         self._quality = None if quality is None else DataQuality.model_validate(quality)
         self._learned = None if learned is None else LearnedRhythm.model_validate(learned)

@@ -77,6 +77,22 @@ class SharedErrorParameters:
 
 
 @dataclass(frozen=True, slots=True)
+class TrunkParameters:
+    """Autocorrelation of the lower back's acceleration."""
+
+    window_s: float = 6.0
+    """s over which it is taken: five strides (proposal)."""
+    longest_stride_s: float = 2.5
+    """s; the slowest strides that are counted last as long."""
+    least_motion: float = 0.4
+    """m/s^2, standard deviation within a window: standing stays below 0.1, slow walking is above (proposal)."""
+    longest_hole_s: float = 0.05
+    """s between two samples of one window."""
+    peak_within: float = 0.15
+    """of a lag, by which its peak may lie beside (proposal)."""
+
+
+@dataclass(frozen=True, slots=True)
 class MetricsParameters:
     """How many strides or repetitions a number must rest on."""
 
@@ -99,6 +115,8 @@ class MetricsParameters:
     """phases of a timed test told one by one; what a message takes."""
     shared: SharedErrorParameters = field(default_factory=SharedErrorParameters)
     """errors that all strides have alike."""
+    trunk: TrunkParameters = field(default_factory=TrunkParameters)
+    """of whoever wears a lumbar sensor alone."""
 
 
 @dataclass(frozen=True, slots=True)
