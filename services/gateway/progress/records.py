@@ -1,14 +1,30 @@
 """A patient's baseline in the database, frozen when it is first needed."""
 
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from datetime import UTC, datetime
+from typing import TypeVar
 
+from sqlalchemy.exc import IntegrityError
 from sqlalchemy.orm import Session
 
 from schemas.population import Population
+from services.gateway.database import Database
 from services.gateway.tables import BaselineRow, PatientRow
 from services.progress.baseline import Baseline, complete, freeze
 from services.progress.visits import Visit, numbers_of_sessions
+
+T = TypeVar("T")
+
+
+def settled(database: Database, work: Callable[[Session], T]) -> T:
+    """What `work` gives in a transaction. Where another request froze the same baseline meanwhile, it is done again
+    and finds that one."""
+    try:
+        with database.transaction() as session:
+            return work(session)
+    except IntegrityError:
+        with database.transaction() as session:
+            return work(session)
 
 
 def stored_baseline(database: Session, patient: str) -> Baseline | None:
@@ -32,7 +48,7 @@ def frozen_baseline(
         row = None
     if row is None:
         fresh = freeze(visits, None, population, references)
-        return None if fresh is None else keep_baseline(database, patient.code, fresh)
+        return None if fresh is None else _keep_first(database, patient.code, fresh)
     stored = Baseline.model_validate(row.body)
     whole = complete(stored, visits, population)
     if whole != stored:
@@ -51,11 +67,21 @@ def chosen_baseline(
 
 def keep_baseline(database: Session, patient: str, baseline: Baseline) -> Baseline:
     """Store it in place of any other."""
-    body = baseline.model_dump(mode="json")
-    row = BaselineRow(patient_code=patient, session_id=baseline.session, frozen=datetime.now(UTC), body=body)
-    database.merge(row)
+    database.merge(_row(patient, baseline))
     database.flush()
     return baseline
+
+
+def _keep_first(database: Session, patient: str, baseline: Baseline) -> Baseline:
+    """Store it; one that somebody chose in between is not replaced. Raises IntegrityError then."""
+    database.add(_row(patient, baseline))
+    database.flush()
+    return baseline
+
+
+def _row(patient: str, baseline: Baseline) -> BaselineRow:
+    body = baseline.model_dump(mode="json")
+    return BaselineRow(patient_code=patient, session_id=baseline.session, frozen=datetime.now(UTC), body=body)
 
 
 def delete_baseline(database: Session, patient: str) -> bool:

@@ -40,8 +40,9 @@ def read_progress(
 
     The first usable visit becomes the baseline when none was chosen; its thresholds are frozen then.
     """
-    with gateway.database.transaction() as database:
-        _, found = patient_progress(database, gateway, code, task, measure)
+    _, found = records.settled(
+        gateway.database, lambda database: patient_progress(database, gateway, code, task, measure)
+    )
     return shapes.progress_out(code, found)
 
 
@@ -62,12 +63,15 @@ def patient_progress(
 @router.get("/{code}/baseline", responses=documented(HTTPStatus.NOT_FOUND))
 def read_baseline(code: PatientCode, gateway: Context) -> BaselineOut:
     """What progress counts from. The first usable visit, when none was chosen."""
-    with gateway.database.transaction() as database:
+
+    def read(database: Session) -> BaselineOut:
         patient, visits = _known(database, code)
         baseline = records.frozen_baseline(database, patient, visits, _versions(reference_uses(gateway)))
         if baseline is None:
             raise Problem(HTTPStatus.NOT_FOUND, f"Patient {code} has no usable visit yet.", NEEDS)
         return _shape(database, code, baseline, visits)
+
+    return records.settled(gateway.database, read)
 
 
 @router.put("/{code}/baseline", responses=documented(HTTPStatus.NOT_FOUND, HTTPStatus.CONFLICT))

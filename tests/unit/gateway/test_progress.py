@@ -2,6 +2,8 @@ from http import HTTPStatus
 
 import pytest
 
+from services.gateway.progress import records
+from services.progress.baseline import freeze
 from tests.unit.gateway.comings import come, come_often, new_patient
 
 
@@ -104,6 +106,17 @@ def test_a_baseline_whose_session_was_another_patients_is_forgotten(client, code
     client.put(f"/v1/patients/{code}/baseline", json={"session": "s1"})
     client.patch("/v1/sessions/s1", json={"patient": None})
     assert client.get(f"/v1/patients/{code}/baseline").json()["session"] == "s0"
+
+
+def test_two_who_ask_at_once_get_the_same_baseline(client, gateway, code, monkeypatch):
+    def frozen_meanwhile(visits, *others):
+        monkeypatch.setattr(records, "freeze", freeze)
+        with gateway.database.transaction() as database:
+            records.keep_baseline(database, code, freeze(visits, "s1", *others[1:]))
+        return freeze(visits, *others)
+
+    monkeypatch.setattr(records, "freeze", frozen_meanwhile)
+    assert client.get(f"/v1/patients/{code}/baseline").json()["session"] == "s1"
 
 
 def test_without_sessions_there_is_nothing_to_say(client):
