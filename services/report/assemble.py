@@ -6,6 +6,7 @@ from collections.abc import Callable
 from schemas.vocabulary import Task
 from services.report.catalogue import Catalogue, catalogue
 from services.report.content import Language, Report, Section, SectionId
+from services.report.sections.consistency import consistency
 from services.report.sections.curve_distance import curve_distance
 from services.report.sections.curves import curves
 from services.report.sections.header import footer, header
@@ -24,10 +25,11 @@ Maker = Callable[[ReportSource, Catalogue], Section | None]
 
 WALK: tuple[Maker, ...] = (
     summary, time_distance, curves, key_points, symmetry, sides, progress, curve_distance, limits,
+    consistency,
 )  # fmt: skip
 """Clinical conventions, section 10.3."""
 WALKING_TEST: tuple[Maker, ...] = (
-    summary, test_result, time_distance, curves, key_points, symmetry, progress, limits,
+    summary, test_result, time_distance, curves, key_points, symmetry, progress, limits, consistency,
 )  # fmt: skip
 """The test's own result comes before the walking in it; leg against leg is a matter of a walk without turns."""
 STANDING: tuple[Maker, ...] = (summary, repetitions, test_result, symmetry, progress, limits)

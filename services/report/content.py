@@ -116,13 +116,14 @@ class SectionId(StrEnum):
     CURVE_DISTANCE = "curve_distance"
     SIDES = "sides"
     LIMITS = "limits"
+    CONSISTENCY = "consistency"
 
 
 class Section(Shown):
     """One part under its heading: sentences, then charts, then a table, then notes. Any of them may be missing."""
 
     id: SectionId
-    page: Literal[1, 2] = Field(description="1 for therapist and patient, 2 for specialists")
+    page: Literal[1, 2, 3] = Field(description="1 for therapist and patient, 2 for specialists, 3 on request")
     title: str = Field(examples=["Summary"])
     sentences: list[str]
     charts: list[Chart]

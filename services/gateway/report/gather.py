@@ -8,10 +8,13 @@ from sqlalchemy import select
 from sqlalchemy.orm import Session
 
 from schemas.archive_layout import Manifest, RecordingState, folder_name, parse_file_name
+from schemas.gait import Stride
 from schemas.kinematics import Calibration
 from schemas.metrics import SessionMetrics
 from schemas.population import Population, Sex
 from schemas.session import SessionDescription
+from schemas.signals import STRIDE
+from services.exports.recorded import RecordedSession
 from services.gateway.context import Gateway
 from services.gateway.problems import Problem
 from services.gateway.progress.routes import patient_progress
@@ -20,6 +23,7 @@ from services.gateway.sessions.models import SessionState
 from services.gateway.sessions.records import get_session
 from services.gateway.sessions.shapes import stored_metrics
 from services.gateway.tables import PatientRow, SessionRow, TreatmentRow
+from services.recordings.errors import ArchiveError, NotARecording
 from services.recordings.folder import read_manifest
 from services.reference.bands import Person
 from services.report.from_progress import progress_of
@@ -27,8 +31,9 @@ from services.report.from_reference import References, references_of
 from services.report.source import Patient, Progress, ReportSource, Treatment
 
 
-def report_source(gateway: Gateway, session: str) -> ReportSource:
-    """Raises a 404 problem for an unknown session, a 409 problem for one without final metrics."""
+def report_source(gateway: Gateway, session: str, *, with_strides: bool = False) -> ReportSource:
+    """Raises a 404 problem for an unknown session or recording, a 409 problem for one without final metrics."""
+    strides = recorded_strides(gateway.settings.data_dir, session) if with_strides else ()
     with gateway.database.transaction() as database:
         row = get_session(database, session)
         metrics = _final_metrics(row)
@@ -50,7 +55,7 @@ def report_source(gateway: Gateway, session: str) -> ReportSource:
             reference_gaps=references.gaps,
             installed_sets=references.sets,
             recording_sha256=recording_digest(gateway.settings.data_dir, session),
-            strides=(),
+            strides=strides,
         )
 
 
@@ -96,6 +101,19 @@ def _references(
     compared = Person(None if born is None else float(year - born), sex, speed)
     datum = None if calibration is None else calibration.datum
     return references_of(shelf_of(gateway).sets, metrics, compared, datum)
+
+
+def recorded_strides(data_dir: Path, session: str) -> tuple[Stride, ...]:
+    """Every stride that the archive has. Raises a 404 problem without a recording, a 409 problem for a damaged one."""
+    try:
+        recording = RecordedSession(data_dir / folder_name(session))
+        return tuple(each for each in recording.payloads(STRIDE) if isinstance(each, Stride))
+    except (NotARecording, FileNotFoundError) as error:
+        step = "Ask for the report without its strides."
+        raise Problem(HTTPStatus.NOT_FOUND, f"Session {session} has no recording.", step) from error
+    except ArchiveError as error:
+        step = "Ask for the report without its strides, or restore the recording from a backup."
+        raise Problem(HTTPStatus.CONFLICT, f"The recording of session {session} is damaged.", step) from error
 
 
 def recording_digest(data_dir: Path, session: str) -> str | None:

@@ -1,9 +1,10 @@
 """REST of reports: content for a page, a page of its own, PDF; and the words they are written in."""
 
+from dataclasses import dataclass
 from http import HTTPStatus
 from typing import Annotated
 
-from fastapi import APIRouter, Path, Query
+from fastapi import APIRouter, Depends, Path, Query
 from fastapi.responses import HTMLResponse, Response
 
 from services.gateway.context import Context, Gateway, SessionId
@@ -19,14 +20,28 @@ router = APIRouter(prefix="/v1", tags=["reports"])
 
 PDF = "application/pdf"
 In = Annotated[Language, Query(description="language of the report", examples=["fr"])]
+AllStrides = Annotated[
+    bool, Query(description="also every stride, from the recording: why some were left out, and a page of them all")
+]
 LanguageCode = Annotated[str, Path(pattern="^[a-z]{2}$", description="ISO 639 code of a language", examples=["fr"])]
+
+
+@dataclass(frozen=True)
+class Wish:
+    """How a report is asked for."""
+
+    language: In = Language.ENGLISH
+    strides: AllStrides = False
+
+
+Asked = Annotated[Wish, Depends()]
 PROBLEMS = documented(HTTPStatus.NOT_FOUND, HTTPStatus.CONFLICT)
 
 
 @router.get("/sessions/{session}/report", responses=PROBLEMS)
-def read_report(session: SessionId, gateway: Context, language: In = Language.ENGLISH) -> Report:
+def read_report(session: SessionId, gateway: Context, asked: Asked) -> Report:
     """The report of a session as content: sentences, tables, charts as SVG. Progress is told up to its visit."""
-    return _report(gateway, session, language)
+    return _report(gateway, session, asked)
 
 
 @router.get(
@@ -34,9 +49,9 @@ def read_report(session: SessionId, gateway: Context, language: In = Language.EN
     response_class=HTMLResponse,
     responses={200: {"content": {"text/html": {}}, "description": "The page"}, **PROBLEMS},
 )
-def read_report_page(session: SessionId, gateway: Context, language: In = Language.ENGLISH) -> HTMLResponse:
+def read_report_page(session: SessionId, gateway: Context, asked: Asked) -> HTMLResponse:
     """The report as one page that needs nothing else, and prints on A4."""
-    return HTMLResponse(page(_report(gateway, session, language)))
+    return HTMLResponse(page(_report(gateway, session, asked)))
 
 
 @router.get(
@@ -44,10 +59,10 @@ def read_report_page(session: SessionId, gateway: Context, language: In = Langua
     response_class=Response,
     responses={200: {"content": {PDF: {}}, "description": "The PDF"}, **PROBLEMS},
 )
-def read_report_pdf(session: SessionId, gateway: Context, language: In = Language.ENGLISH) -> Response:
+def read_report_pdf(session: SessionId, gateway: Context, asked: Asked) -> Response:
     """The report as tagged PDF (PDF/UA-1). The same results give the same bytes."""
-    report = _report(gateway, session, language)
-    name = f'inline; filename="{session}-{language}.pdf"'
+    report = _report(gateway, session, asked)
+    name = f'inline; filename="{session}-{asked.language}.pdf"'
     return Response(press().pdf(report), media_type=PDF, headers={"Content-Disposition": name})
 
 
@@ -61,5 +76,5 @@ def read_wording(language: LanguageCode) -> dict[str, str]:
     return catalogue(Language(language)).messages
 
 
-def _report(gateway: Gateway, session: str, language: Language) -> Report:
-    return make_report(report_source(gateway, session), language)
+def _report(gateway: Gateway, session: str, asked: Asked) -> Report:
+    return make_report(report_source(gateway, session, with_strides=asked.strides), asked.language)

@@ -6,6 +6,9 @@ import pytest
 from pypdf import PdfReader
 
 from schemas.archive_layout import Manifest, RecordingState, SegmentEntry
+from schemas.signals import STRIDE
+from schemas.vocabulary import Side
+from services.flow.message import Stream, encode_payload
 from services.gateway.report.gather import recording_digest
 from services.gateway.sessions import records
 from services.gateway.sessions.models import SessionState
@@ -119,3 +122,40 @@ def test_words_of_a_language_can_be_read(client):
 
 def test_the_report_is_json_without_anything_that_is_no_number(client, walked):
     json.loads(client.get(f"/v1/sessions/{walked}/report").text, parse_constant=pytest.fail)
+
+
+@pytest.fixture
+def recorded_walk(client, gateway, settings, made, recorded, tape):
+    """Session `a` with six strides in its recording, one of them rejected."""
+    gateway.keeper.appeared(made.describe("a"))
+    with gateway.database.transaction() as database:
+        records.record_metrics(database, "a", made.metrics_at(9.0, final=True))
+    folder = settings.data_dir / "a"
+    folder.mkdir(parents=True)
+    stream = Stream(STRIDE, "segmentation")
+    messages = []
+    for number in range(6):
+        stride = made.stride_at(2.0 + number, (Side.LEFT, Side.RIGHT)[number % 2], number)
+        if number == 5:
+            stride = stride.model_copy(update={"valid": False, "rejected_because": "shorter than a stride can be"})
+        at = stride.end_ns
+        messages.append(tape.record(stream, number, payload=encode_payload(stride), captured_ns=at))
+    recorded(messages, folder=folder)
+    return "a"
+
+
+def test_on_request_every_stride_is_drawn_and_rejections_have_their_reason(client, recorded_walk):
+    asked = client.get(f"/v1/sessions/{recorded_walk}/report", params={"strides": True}).json()
+    assert asked["sections"][-1]["id"] == "consistency"
+    knee = next(chart for chart in asked["sections"][-1]["charts"] if chart["id"] == "strides-knee-flexion-left")
+    assert knee["svg"].count("<path") == 3
+    without = client.get(f"/v1/sessions/{recorded_walk}/report").json()
+    assert "consistency" not in [section["id"] for section in without["sections"]]
+    pdf = client.get(f"/v1/sessions/{recorded_walk}/report.pdf", params={"strides": True})
+    assert len(PdfReader(io.BytesIO(pdf.content)).pages) == 3
+
+
+def test_strides_of_a_session_without_recording_are_not_found(client, walked):
+    answer = client.get(f"/v1/sessions/{walked}/report", params={"strides": True})
+    assert answer.status_code == 404
+    assert "without its strides" in answer.json()["next_step"]
