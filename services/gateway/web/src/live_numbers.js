@@ -55,6 +55,12 @@ export class LiveNumbers {
     }
   }
 
+  /** On the spot: nobody gets anywhere, so there is neither a speed nor a length. */
+  onTheSpot() {
+    this.speed.node.hidden = true;
+    for (const row of this.cells) if (row.unit === "m") row.node.hidden = true;
+  }
+
   onPose(pose) {
     this.at = pose.at_s;
     say(this.cadence.value, number(pose.cadence_per_min, 0));

@@ -187,6 +187,7 @@ export class LiveView {
     this.curves.append(...this.charts.map((chart) => chart.node));
     for (const chart of this.charts) chart.start();
     if (legs) this.showLegsAlone(legs);
+    if (session.task === "marching") this.numbers.onTheSpot();
     if (wholeBody) this.showWholeBody(wholeBody, session.cameras);
     this.showKey(sides);
   }

@@ -4,7 +4,7 @@ import { el } from "./dom.js";
 const GRADE_TONES = { good: "good", fair: "check", poor: "check", withheld: "lost" };
 const DRAWING = "image/svg+xml";
 
-/** The parts of one reading level; `page` is 1 for therapist and patient, 2 for specialists. */
+/** The parts of one reading level; `page` is 1 for therapist and patient, 2 for specialists, 3 for all strides. */
 export function reportDocument(report, page) {
   const sections = report.sections.filter((section) => section.page === page);
   return el(

@@ -7,11 +7,12 @@ import { el, fill } from "./dom.js";
 import { MeasuredView } from "./measured_view.js";
 import { PatientLink } from "./patient_link.js";
 import { reportDocument } from "./report_document.js";
-import { LANGUAGES, REPORT_WORDS } from "./report_words.js";
+import { ALL_STRIDES, LANGUAGES, REPORT_WORDS } from "./report_words.js";
 import { clock, number, when } from "./units.js";
 import { STORED_WORDS, TASKS, misplacedText } from "./words.js";
 
 const MEASURED = "measured";
+const WALKS = [null, "walk", "six_minute_walk", "ten_metre_walk"];
 
 export class ReportView {
   constructor(host, session) {
@@ -25,8 +26,8 @@ export class ReportView {
     });
     this.levels = new Choices({
       name: "report-level",
-      label: REPORT_WORDS.en.levels,
-      options: levelsIn("en"),
+      label: REPORT_WORDS.en.reading_level,
+      options: this.levelsIn("en"),
       onChoose: () => this.show(),
     });
     this.pdf = el("a", { class: "button", download: true });
@@ -70,25 +71,33 @@ export class ReportView {
   async show() {
     const [level, language] = [this.levels.chosen, this.languages.chosen];
     const words = REPORT_WORDS[language];
-    this.levels.reword(words.levels, levelsIn(language));
+    this.levels.reword(words.reading_level, this.levelsIn(language));
     this.languages.reword(words.languages, LANGUAGES);
-    this.pdf.href = `/v1${this.path}.pdf?language=${language}`;
+    this.pdf.href = `/v1${this.path}.pdf?${query(language, level)}`;
     this.pdf.textContent = words.pdf;
     this.measured.node.hidden = level !== MEASURED;
     this.sheet.hidden = level === MEASURED;
     if (level === MEASURED) return;
     if (!this.sheet.firstChild) fill(this.sheet, el("p", { class: "quiet" }, words.reading));
-    const shown = await this.sheetOf(language, Number(level));
+    const shown = await this.sheetOf(language, level);
     if (!this.disposed && level === this.levels.chosen && language === this.languages.chosen) fill(this.sheet, shown);
   }
 
-  async sheetOf(language, page) {
+  async sheetOf(language, level) {
+    const asked = query(language, level);
     try {
-      this.reports[language] ??= await get(`${this.path}?language=${language}`);
-      return reportDocument(this.reports[language], page);
+      this.reports[asked] ??= await get(`${this.path}?${asked}`);
+      const report = this.reports[asked];
+      const has = report.sections.some((section) => String(section.page) === level);
+      return has ? reportDocument(report, Number(level)) : el("p", { class: "panel" }, REPORT_WORDS[language].nothing);
     } catch (problem) {
       return el("p", { class: "panel" }, problem.message);
     }
+  }
+
+  levelsIn(language) {
+    const { [ALL_STRIDES]: strides, ...others } = REPORT_WORDS[language].levels;
+    return WALKS.includes(this.session.task) ? REPORT_WORDS[language].levels : others;
   }
 
   get path() {
@@ -101,11 +110,7 @@ export class ReportView {
   }
 }
 
-const levelsIn = (language) => ({
-  1: REPORT_WORDS[language][1],
-  2: REPORT_WORDS[language][2],
-  [MEASURED]: REPORT_WORDS[language].measured,
-});
+const query = (language, level) => `language=${language}${level === ALL_STRIDES ? "&strides=true" : ""}`;
 
 function taskWords({ task, walkway_m }) {
   return walkway_m ? `${TASKS[task]}, ${number(walkway_m, 1)} m` : TASKS[task];

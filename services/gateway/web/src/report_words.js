@@ -2,23 +2,34 @@
 
 export const LANGUAGES = { en: "English", fr: "Français" };
 
+/** Levels are pages of the report; the third one is made from every stride that was recorded. */
+export const ALL_STRIDES = "3";
+
 export const REPORT_WORDS = {
   en: {
-    levels: "Reading level",
-    1: "For patient and therapist",
-    2: "For specialists",
-    measured: "Measurements and files",
+    reading_level: "Reading level",
+    levels: {
+      1: "For patient and therapist",
+      2: "For specialists",
+      3: "All strides",
+      measured: "Measurements and files",
+    },
     languages: "Language",
     pdf: "PDF",
     reading: "Reading …",
+    nothing: "There is nothing of this kind to show.",
   },
   fr: {
-    levels: "Niveau de lecture",
-    1: "Pour le patient et le thérapeute",
-    2: "Pour les spécialistes",
-    measured: "Mesures et fichiers",
+    reading_level: "Niveau de lecture",
+    levels: {
+      1: "Pour le patient et le thérapeute",
+      2: "Pour les spécialistes",
+      3: "Tous les cycles",
+      measured: "Mesures et fichiers",
+    },
     languages: "Langue",
     pdf: "PDF",
     reading: "Lecture …",
+    nothing: "Il n’y a rien de tel à montrer.",
   },
 };
