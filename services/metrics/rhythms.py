@@ -5,7 +5,7 @@ from math import pi
 
 import numpy as np
 
-from schemas.metrics import Metric
+from schemas.metrics import Doubt, DoubtKind, Metric
 from schemas.rhythm import KnownRhythm, LearnedJoint, LearnedRhythm
 from schemas.vocabulary import Side
 from services.biomech.rhythm.comparison import Comparison, Leg, compare_legs
@@ -22,9 +22,11 @@ def rhythm_metrics(learned: LearnedRhythm | None, known: Sequence[KnownRhythm], 
     """The legs against each other, then each leg against each known rhythm; withheld before the end."""
     if learned is None:
         because = NOT_LEARNED if final else NOT_YET
-        metrics = [withheld(definition, None, 0, because) for definition in (SIDE_DISTANCE, SIDE_SHAPE, SIDE_TIMING)]
+        doubts = [Doubt(kind=DoubtKind.NOT_LOCKED, value=0.0, limit=3.0, subject=None)] if final else []
+        rows = (SIDE_DISTANCE, SIDE_SHAPE, SIDE_TIMING)
+        metrics = [withheld(definition, None, 0, because, doubts) for definition in rows]
         return metrics + [
-            withheld(definition, side.value, 0, because)
+            withheld(definition, side.value, 0, because, doubts)
             for each in known
             for definition in COMPARED_WITH[each.kind]
             for side in Side

@@ -54,7 +54,10 @@ class Trust:
         return _with_interval(metric, definition).model_copy(update={"grade": grade, "doubts": doubts})
 
     def _unseen(self, metric: Metric, definition: Definition) -> Metric:
-        """What was not observed at all, in the words of why it cannot be."""
+        """What was not observed, with a doubt that says so in any language, and why it cannot be where known."""
+        if not metric.doubts:
+            unseen = Doubt(kind=DoubtKind.NOT_OBSERVED, value=None, limit=None, subject=metric.side)
+            metric = metric.model_copy(update={"doubts": [unseen]})
         because = {Basis.WIDTH: NOT_ON_THE_BODY, Basis.ANKLE: UNSEEN_FEET}.get(definition.basis)
         if because is None or metric.strides or self._inputs.uses_camera:
             return metric

@@ -154,6 +154,7 @@ def test_what_no_sensor_on_the_body_sees_says_so(description):
     metric = summary.withheld(BY_NAME["step_width"], None, 0, "not observed in any stride that counts")
     [found] = Trust(description).judged([metric], None, {})
     assert found.withheld_because == "not observable from sensors on the body"
+    assert kinds(found) == [DoubtKind.NOT_OBSERVED]
 
 
 def test_numbers_of_strides_are_what_they_are(judge):
