@@ -15,6 +15,7 @@ from services.exports.opensim.storage_file import storage_file
 from services.exports.session import Session, contents_of, facts_of
 from services.exports.tables.csv_file import csv_text
 from services.exports.tables.kinds import TABLES
+from services.flow.message import DecodeError
 
 
 class Options(NamedTuple):
@@ -152,6 +153,10 @@ def write(name: str, session: Session, file: BinaryIO, options: Options | None =
     if reason is not None:
         raise ExportError("session", reason, "choose another format")
     size = 0
-    for part in format_of(name).writing(session, options or Options()):
-        size += file.write(part)
+    try:
+        for part in format_of(name).writing(session, options or Options()):
+            size += file.write(part)
+    except DecodeError as error:
+        what = f"holds messages that this Ambula does not read, {error}"
+        raise ExportError("recording", what, "compute the session anew with `ambula reprocess`") from error
     return size

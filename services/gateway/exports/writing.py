@@ -9,7 +9,6 @@ from typing import IO
 from services.exports.errors import ExportError
 from services.exports.formats import Options, write
 from services.exports.recorded import RecordedSession
-from services.flow.message import DecodeError
 from services.gateway.exports.recording import Recorded
 from services.gateway.problems import Problem
 from services.recordings.errors import ArchiveError
@@ -50,7 +49,7 @@ def _problem(error: BaseException) -> Problem | None:
     match error:
         case ExportError():
             return Problem(HTTPStatus.CONFLICT, f"{error.field}: {error.what}.", f"Do this: {error.next_step}.")
-        case ArchiveError() | DecodeError():
+        case ArchiveError():
             return Problem(HTTPStatus.CONFLICT, str(error), "Restore the recording from a backup, then export again.")
         case OSError():
             why = f"The file could not be written: {error.strerror}."

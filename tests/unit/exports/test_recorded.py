@@ -5,6 +5,7 @@ import io
 import pytest
 
 from schemas.signals import GAIT_EVENT, IMU, JOINT_STATE
+from services.exports.errors import ExportError
 from services.exports.formats import FORMATS, write
 from services.exports.recorded import RecordedSession, listed_signals
 from services.exports.session import HeldSession
@@ -72,6 +73,12 @@ def test_a_damaged_recording_is_no_export(folder):
     path.write_bytes(path.read_bytes()[:-3000])
     with pytest.raises(DamagedRecording, match="restore this file from a backup"):
         write("joint_angles.csv", RecordedSession(folder), io.BytesIO())
+
+
+def test_messages_of_an_ambula_that_is_not_ours_are_told_as_such(recorded, tape):
+    """The payloads of this tape are no joint states."""
+    with pytest.raises(ExportError, match=r"recording: holds messages .*compute the session anew"):
+        write("joint_angles.csv", RecordedSession(recorded(tape.walk(5, tape.joints))), io.BytesIO())
 
 
 def test_a_folder_of_something_else_is_refused(tmp_path):
