@@ -6,7 +6,7 @@ from typing import NamedTuple
 
 from services.report.charts.colours import INK
 
-FONT = "Source Sans Pro, Source Sans 3, Segoe UI, Helvetica, Arial, sans-serif"
+FONT = "Source Sans Pro, Segoe UI, system-ui, Helvetica, Arial, DejaVu Sans, sans-serif"
 TEXT_SIZE = 8.0
 """Units of a drawing; charts are drawn so large that this is 6.5 points or more on paper."""
 SIDE_DASHES = {"left": None, "right": "5 2.5"}

@@ -5,6 +5,7 @@ import pytest
 from schemas.vocabulary import Side
 from services.report.charts import colours
 from services.report.charts.axes import digits_of, ticks
+from services.report.charts.canvas import FONT
 from services.report.charts.curve_chart import CurveBand, CurveLabels, SideCurve, curve_chart
 from services.report.charts.labels import Label, apart
 from services.report.charts.progress_chart import (
@@ -117,3 +118,8 @@ def test_labels_are_moved_apart_and_keep_their_order():
     placed = apart([Label(10.0, "R", "b"), Label(9.0, "L", "a")], 8.0)
     assert [label.text for label in placed] == ["L", "R"]
     assert placed[1].at - placed[0].at == pytest.approx(8.0)
+
+
+def test_names_of_faces_are_such_that_a_browser_takes_them_without_quotes():
+    # A name with a part that begins with a digit would make the whole list invalid.
+    assert all(part[0].isalpha() for name in FONT.split(",") for part in name.split())
