@@ -76,6 +76,7 @@ _CSV = "text/csv; charset=utf-8"
 _OF_TABLES = {
     "metrics": "numbers of the session with spread, 95 % interval, grade, doubts and n; mean and SD for z-scores",
     "curves": "mean and SD of each joint over 0-100 % of the stride",
+    "sides": "curves of one leg against the other's, joint by joint",
     "strides": "one row a stride of each foot",
     "events": "foot contacts",
     "joint_angles": "angles over time in degrees, with their deviations",

@@ -6,11 +6,11 @@ from typing import Any, NamedTuple
 
 from schemas.gait import GaitEvent, Stride
 from schemas.kinematics import JointState
-from schemas.metrics import Doubt, MeanCurve, Metric, SessionMetrics
+from schemas.metrics import Doubt, MeanCurve, Metric, SessionMetrics, SideComparison
 from schemas.payload import Payload
 from schemas.signals import GAIT_EVENT, JOINT_STATE, METRICS, REPETITION, STRIDE, TASK_PHASE, Signal
 from schemas.tasks import Repetition, TaskPhase
-from schemas.vocabulary import BODY_MODELS, MOVEMENTS
+from schemas.vocabulary import BODY_MODELS, MOVEMENTS, Side
 from services.definitions.table import BY_NAME
 from services.exports.facts import directions, freedoms_of
 from services.exports.tables.columns import Cell, Column, Row, angles, degrees, field, plain, seconds, times
@@ -79,6 +79,12 @@ METRIC_COLUMNS = (
         for name in ("value", "spread", "low", "high")
     ),
 )
+SIDE_COLUMNS = (
+    *plain(SideComparison, "joint", "reference_side"),
+    *angles(SideComparison, "rmse", "rmse_std", "rmse_about_mean"),
+    *plain(SideComparison, "shift"),
+    Column("strides", "number of strides of the side with fewer (n)", field("strides")),
+)
 CURVE_COLUMNS = (
     Column("degree_of_freedom", "", lambda point: point[0].degree_of_freedom),
     Column("percent", "% of the stride", lambda point: point[1]),
@@ -129,6 +135,15 @@ def _about_curves(newest: Payload | None) -> list[str]:
     return ["mean and sd over the strides, 0 to 100 % of the stride; a band of them is +-1 SD", *directions(known)]
 
 
+def _about_sides(newest: Payload | None) -> list[str]:
+    joints = [each.joint for each in newest.sides] if isinstance(newest, SessionMetrics) else []
+    known = [FREEDOMS[f"{joint}_{side}"] for joint in joints for side in Side if f"{joint}_{side}" in FREEDOMS]
+    return [
+        "mean curves of one leg against the other's, shifted by half a stride; reference_side: non-paretic, else right",
+        *directions(known),
+    ]
+
+
 def _about_repetitions(_: Payload | None) -> list[str]:
     movements = [f"{name}: {meaning}" for name, meaning in MOVEMENTS.items()]
     return [*movements, *directions(freedom for freedom in FREEDOMS.values() if freedom.name not in MOVEMENTS)]
@@ -157,6 +172,7 @@ def _ended(phase: TaskPhase) -> Iterable[TaskPhase]:
 TABLES: dict[str, Table] = {
     "metrics": Table(METRICS, _always(METRIC_COLUMNS), lambda newest: newest.metrics, _about_metrics, True),
     "curves": Table(METRICS, _always(CURVE_COLUMNS), _curve_points, _about_curves, True),
+    "sides": Table(METRICS, _always(SIDE_COLUMNS), lambda newest: newest.sides, _about_sides, True),
     "strides": Table(STRIDE, _always(STRIDE_COLUMNS), _itself, _says("one row a stride of each foot, in order")),
     "events": Table(GAIT_EVENT, _always(EVENT_COLUMNS), _itself, _says("foot contacts, in order")),
     "joint_angles": Table(JOINT_STATE, _angle_columns, _angle_entries, _says("an empty cell: not valid then")),

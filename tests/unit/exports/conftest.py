@@ -9,7 +9,7 @@ import pytest
 from schemas.conditions import Conditions, Footwear, WalkingAid
 from schemas.gait import CURVE_POINTS, GaitEvent, Stride
 from schemas.kinematics import Calibration, JointCentres, JointState
-from schemas.metrics import MeanCurve, Metric, SessionMetrics, TrustGrade
+from schemas.metrics import MeanCurve, Metric, SessionMetrics, SideComparison, TrustGrade
 from schemas.session import CameraDescription
 from schemas.signals import (
     CALIBRATION,
@@ -102,8 +102,12 @@ def some_metrics():
     curve = MeanCurve(
         degree_of_freedom="knee_flexion_left", strides=12, mean=[0.5] * CURVE_POINTS, spread=[0.1] * CURVE_POINTS
     )
+    sides = SideComparison(
+        joint="knee_flexion", reference_side="right", rmse=0.2, rmse_std=0.02, rmse_about_mean=0.15, shift=0.01,
+        strides=11,
+    )  # fmt: skip
     return SessionMetrics(
-        captured_ns=START_NS, final=True, software="ambula 0.0.1+abc", metrics=metrics, curves=[curve], sides=[],
+        captured_ns=START_NS, final=True, software="ambula 0.0.1+abc", metrics=metrics, curves=[curve], sides=[sides],
         quality=None, phases=[], repetitions=[],
     )  # fmt: skip
 

@@ -87,4 +87,4 @@ def test_a_folder_of_something_else_is_refused(tmp_path):
 
 
 def test_all_formats_are_in_the_list():
-    assert len(FORMATS) == 12
+    assert len(FORMATS) == 13

@@ -29,7 +29,19 @@ def test_every_table_says_what_it_is_of_and_defines_its_columns(name, walk):
     assert "computed by: ambula 0.0.1+abc" in text
     assert "initial contact of the same foot. Steps are named by the leading leg." in text
     assert rows
-    plain = {"side", "index", "event", "name", "task", "phase", "valid", "grade", "degree_of_freedom", "attempt"}
+    plain = {
+        "side",
+        "index",
+        "event",
+        "name",
+        "task",
+        "phase",
+        "valid",
+        "grade",
+        "degree_of_freedom",
+        "attempt",
+        "joint",
+    }
     undefined = {column for column in rows[0] if not any(line.startswith(f"{column}: ") for line in head)}
     assert undefined <= plain
 
@@ -86,6 +98,13 @@ def test_curves_have_a_row_for_each_percent(walk):
     _, rows = table("curves", walk)
     assert [row["percent"] for row in rows] == [str(percent) for percent in range(101)]
     assert float(rows[0]["mean_deg"]) == pytest.approx(math.degrees(0.5), rel=1e-6)
+
+
+def test_legs_are_compared_in_radians_and_degrees(walk):
+    head, rows = table("sides", walk)
+    assert (rows[0]["joint"], rows[0]["reference_side"], rows[0]["strides"]) == ("knee_flexion", "right", "11")
+    assert float(rows[0]["rmse_deg"]) == pytest.approx(math.degrees(0.2), rel=1e-6)
+    assert "knee_flexion_left: positive = shank backward" in head
 
 
 def test_only_phases_that_have_ended_are_rows(walk):
