@@ -7,7 +7,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from schemas.vocabulary import GaitEventKind
-from services.segmentation.gait.swing import Contact, SwingDetector, turning_point
+from services.segmentation.gait.swing import Contact, Rotation, SwingDetector, turning_point
 from services.segmentation.parameters import SegmentationParameters
 
 PARAMETERS = SegmentationParameters()
@@ -37,7 +37,20 @@ def test_contacts_follow_the_turning_points(stride_s, swing_angle):
     assert len(contacts) >= int(12 / stride_s) - 1
     np.testing.assert_allclose(contacts, wanted, atol=2e-3)
     lifts = [event.captured_ns * 1e-9 for _, event in found if event.kind is GaitEventKind.TOE_OFF]
-    np.testing.assert_allclose(lifts[1:], np.arange(1, len(lifts)) * stride_s + stride_s / 2 + 0.037, atol=2e-3)
+    # The shank turns round when its ankle does, and both rules have the same weight.
+    both = 0.5 * (PARAMETERS.toe_off_after_hindmost_s - PARAMETERS.shank_toe_off_before_swing_s)
+    np.testing.assert_allclose(lifts[1:], np.arange(1, len(lifts)) * stride_s + stride_s / 2 + both, atol=2e-3)
+
+
+@pytest.mark.parametrize(("early_s", "counts"), [(-0.1, True), (0.1, True), (0.5, False)])
+def test_a_rotation_that_began_far_from_where_the_ankle_turned_does_not_time_toe_off(early_s, counts):
+    """Its start is half of the toe-off, unless it cannot be the swing's."""
+    detector = SwingDetector(PARAMETERS)
+    hindmost_ns, start_ns = 5_000_000_000, 5_000_000_000 - round(early_s * 1e9)
+    found = detector._agreed(hindmost_ns, Rotation(start_ns, 0.3, 2.0, start_ns + 10**8, ended=False))
+    by_ankle = hindmost_ns + round(PARAMETERS.toe_off_after_hindmost_s * 1e9)
+    by_shank = start_ns - round(PARAMETERS.shank_toe_off_before_swing_s * 1e9)
+    assert found == pytest.approx(0.5 * (by_ankle + by_shank) if counts else by_ankle, abs=2)
 
 
 def test_kinds_alternate_and_delays_are_bounded():
