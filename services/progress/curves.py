@@ -10,6 +10,9 @@ from schemas.vocabulary import Side, Task
 from services.progress.visits import Trial, Visit
 from services.reference.curve_distance import VARIABLES, CurveDistance, curve_distance
 
+ONE_FOR_BOTH = ("pelvis_tilt",)
+"""What is no leg's own."""
+
 Curves = dict[str, list[float]]
 """Degree of freedom without side -> rad at 0, 1, ... 100 % of that leg's stride."""
 
@@ -30,6 +33,7 @@ class CurveVisit:
     from_baseline: CurveDistance | None
     """Null at the baseline itself."""
     from_other_leg: CurveDistance
+    """Of the leg's own joints, so never of all four variables."""
 
 
 def curve_visits(visits: LikeTrials) -> list[CurveVisit]:
@@ -42,7 +46,8 @@ def curve_visits(visits: LikeTrials) -> list[CurveVisit]:
             if not curves:
                 continue
             since = curve_distance(curves, first[side]) if side in first else None
-            other = legs[Side.RIGHT if side is Side.LEFT else Side.LEFT]
+            # The pelvis has one curve, which lies no distance from itself.
+            other = {name: curve for name, curve in legs[side.other].items() if name not in ONE_FOR_BOTH}
             sessions = [trial.session for trial in trials]
             how = trials[0].task, trials[0].conditions.speed_instruction
             found.append(

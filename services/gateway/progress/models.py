@@ -172,7 +172,7 @@ class CurveVisitOut(Shape):
     day: date = Field(examples=["2026-11-22"])
     sessions: list[str] = Field(description="the trials", examples=[["8d0c2a71f04be655"]])
     from_baseline: CurveDistanceOut | None = Field(description="null at the baseline itself")
-    from_other_leg: CurveDistanceOut
+    from_other_leg: CurveDistanceOut = Field(description="of the leg's own joints, so never of all four variables")
 
 
 class ProgressOut(Shape):

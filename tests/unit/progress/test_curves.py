@@ -25,16 +25,18 @@ def test_each_leg_against_its_baseline_and_the_other(make):
     assert left.from_baseline.by_variable["knee_flexion"] == pytest.approx(0.2)
     # Pelvis 0, three joints 0.2 each: sqrt(3 / 4) 0.2.
     assert left.from_baseline.distance == pytest.approx(0.75**0.5 * 0.2)
-    assert left.from_other_leg.distance == pytest.approx(0.75**0.5 * 0.2)
+    assert left.from_other_leg.by_variable == pytest.approx(dict.fromkeys(FOUR, 0.2))
+    assert (left.from_other_leg.distance, left.from_other_leg.missing) == (None, ("pelvis_tilt",))
     assert found[3].from_baseline.distance == pytest.approx(0.0)
     assert found[0].from_baseline is None
 
 
 def test_fewer_than_four_variables_are_no_distance(make):
-    (left, _) = curve_visits(alike(trial(make, "a", 0, 0.2, 0.6, FOUR[:2])))
-    assert left.from_other_leg.distance is None
-    assert left.from_other_leg.missing == ("ankle_dorsiflexion",)
-    assert set(left.from_other_leg.by_variable) == {"pelvis_tilt", "hip_flexion", "knee_flexion"}
+    visits = alike(*(trial(make, name, day, 0.2, 0.6, FOUR[:2]) for name, day in (("a", 0), ("b", 14))))
+    since = curve_visits(visits)[2].from_baseline
+    assert since.distance is None
+    assert since.missing == ("ankle_dorsiflexion",)
+    assert set(since.by_variable) == {"pelvis_tilt", "hip_flexion", "knee_flexion"}
 
 
 def test_trials_of_a_visit_count_by_their_strides(make):
