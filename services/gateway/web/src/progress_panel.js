@@ -46,7 +46,7 @@ export class ProgressPanel {
       el("h3", {}, instruction ? `${TASKS[task]}, pace: ${PACES[instruction].toLowerCase()}` : TASKS[task]),
       differences(all),
       el("div", { class: "multiples" }, ...groups.slice(0, FIRST).map((group) => this.multiple(group, treatments))),
-      el("details", {}, el("summary", {}, `All ${all.length} measures with their verdicts`), verdictTable(all)),
+      el("details", {}, el("summary", {}, `All ${all.length} measures with their verdicts`), verdictTable(all), repeatTable(all)),
     );
   }
 
@@ -122,6 +122,29 @@ function verdictTable(series) {
   });
   const columns = ["Measure", "Side", "Baseline#", "Newest#", "Change (95 % interval)#", "MDC#", "Verdict", "Rule"];
   return table(columns, el("tbody", {}, ...rows));
+}
+
+/** Trials of one visit against each other; null where nobody repeated anything. */
+function repeatTable(series) {
+  const rows = series.flatMap(({ measure, side, unit, repeats }) => {
+    const say = sayer(unit, measure);
+    return repeats.map((repeat) =>
+      el(
+        "tr",
+        {},
+        el("th", { scope: "row" }, metricName(measure)),
+        el("td", { class: side }, LETTERS[side] ?? ""),
+        el("td", { class: "number" }, String(repeat.visit)),
+        el("td", { class: "number" }, say.change(repeat.change.value)),
+        el("td", { class: "number" }, told(repeat.mdc?.value, say.plain)),
+        el("td", {}, verdictChip(repeat)),
+        el("td", { class: "quiet" }, repeat.rules.map((rule) => ruleSentence(rule, say)).join(" ")),
+      ),
+    );
+  });
+  if (rows.length === 0) return null;
+  const columns = ["Last against first trial", "Side", "Visit#", "Change#", "MDC#", "Verdict", "Rule"];
+  return el("div", { class: "below" }, table(columns, el("tbody", {}, ...rows)));
 }
 
 const told = (value, say) => (value === undefined || value === null ? "–" : say(value));
