@@ -3,11 +3,19 @@
 import pytest
 
 from services.bench.metrics import fhir
+from services.report.press import Press
+
+
+@pytest.fixture(scope="module")
+def computed():
+    """The one session, with its printed report."""
+    return fhir._source("synthetic:walk?duration=12&seed=2", 0, Press())
 
 
 @pytest.fixture(autouse=True)
-def _one_short_session(monkeypatch):
-    monkeypatch.setattr(fhir, "KINDS", {"short": "synthetic:walk?duration=12&seed=2"})
+def _one_short_session(monkeypatch, computed):
+    monkeypatch.setattr(fhir, "KINDS", {"short": "computed once"})
+    monkeypatch.setattr(fhir, "_source", lambda *_: computed)
 
 
 def values(section):

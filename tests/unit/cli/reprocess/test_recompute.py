@@ -3,7 +3,6 @@
 import pytest
 
 from schemas.archive_layout import RecordingState, SegmentName
-from schemas.metrics import SessionMetrics
 from services.archive.disk import Disk
 from services.archive.manifest import store, with_state
 from services.cli.reprocess.fingerprints import Fingerprints
@@ -44,13 +43,6 @@ def test_one_altered_message_is_found(walked, archiving, tmp_path):
     assert differing.stored == differing.recomputed
     assert 0 < differing.first < differing.stored
     assert result.stored == result.metrics
-
-
-def test_what_another_software_stored_is_compared_not_judged(walked, archiving, tmp_path):
-    description, messages = walked
-    result = recompute(open_archived(archiving(tmp_path / "s", messages, description, version="0.0.9")))
-    assert (result.stored_version, result.same_software, result.broken) == ("0.0.9", False, False)
-    assert isinstance(result.stored, SessionMetrics)
 
 
 def test_a_session_without_any_result_is_computed(walked, archiving, tmp_path):
