@@ -75,11 +75,11 @@ def freeze(
 ) -> Baseline | None:
     """The baseline of a patient, counted from the visit of `session`, else from the first usable one.
 
-    Null where no visit is usable, or none from that session's on.
+    Null where that visit, or any at all, is not usable.
     """
     start = 1 if session is None else numbers_of_sessions(visits)[session]
-    later = [visit for visit in visits if visit.number >= start]
-    first = next((trial for visit in later for trial in visit.trials if is_usable(trial)), None)
+    candidates = [visit for visit in visits if visit.number == start or (session is None and visit.number > start)]
+    first = next((trial for visit in candidates for trial in visit.trials if is_usable(trial)), None)
     if first is None:
         return None
     frozen = Baseline(

@@ -59,7 +59,7 @@ def frozen_baseline(
 def chosen_baseline(
     database: Session, patient: PatientRow, visits: list[Visit], references: Mapping[str, str], session: str
 ) -> Baseline | None:
-    """Freeze anew, counted from the visit of a session; null, and nothing changes, where none is usable from it on."""
+    """Freeze anew, counted from the visit of a session; null, and nothing changes, where that one is not usable."""
     population = None if patient.population is None else Population(patient.population)
     fresh = freeze(visits, session, population, references)
     return None if fresh is None else keep_baseline(database, patient.code, fresh)

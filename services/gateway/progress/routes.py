@@ -85,7 +85,7 @@ def choose_baseline(code: PatientCode, body: BaselineIn, gateway: Context) -> Ba
         versions = _versions(reference_uses(gateway))
         baseline = records.chosen_baseline(database, patient, visits, versions, body.session)
         if baseline is None:
-            raise Problem(HTTPStatus.CONFLICT, f"From session {body.session} on, no visit is usable.", NEEDS)
+            raise Problem(HTTPStatus.CONFLICT, f"The visit of session {body.session} is not usable.", NEEDS)
         return _shape(database, code, baseline, visits)
 
 

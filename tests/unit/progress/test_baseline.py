@@ -30,6 +30,12 @@ def test_a_chosen_visit_counts_even_when_earlier_ones_could(make):
     assert frozen.tests[0].thresholds[0].key == "lewek_2019_comfortable_speed_middle"
 
 
+def test_a_visit_that_cannot_count_cannot_be_chosen(make):
+    trials = [make.trial("unsaid", 0, make.metric(0.5), conditions=UNSAID), make.trial("good", 14, make.metric(0.5))]
+    assert freeze(in_visits(trials), "unsaid", CHRONIC, {}) is None
+    assert freeze(in_visits(trials), "good", CHRONIC, {}).session == "good"
+
+
 def test_a_test_that_comes_later_joins_and_changes_nothing_else(make):
     walk = make.trial("walk", 0, make.metric(0.5))
     tug = make.trial("tug", 14, make.metric(20.0, 0.5, name="tug_time", unit="s"), task=Task.TIMED_UP_AND_GO,
