@@ -19,6 +19,8 @@ class WalkingTestParameters:
 
     rest_s: float = 2.5
     """s without a step that are standing; the slowest of the published cohorts (36 steps/min) takes 1.7 s a step."""
+    back_late_s: float = 2.5
+    """s by which the lower back tells contacts late after a break: it waits for three even steps (see ../gait/)."""
     recognised_s: float = 3.0
     """s after the end of a test's time for which turns and stops before it may still be recognised."""
     stopped_s: float = 1.0

@@ -39,7 +39,10 @@ class WalkingTestSegmenter:
         gait: SegmentationParameters,
         parameters: WalkingTestParameters = DEFAULTS,
     ) -> None:
-        sees_both = EventSource.NOTHING not in session_event_sources(description).values()
+        sources = session_event_sources(description).values()
+        sees_both = EventSource.NOTHING not in sources
+        late_s = parameters.back_late_s if EventSource.LOWER_BACK in sources else 0.0
+        self._late_ns = round(late_s * 1e9)
         if not sees_both:
             # Of one leg every second step is seen.
             parameters = replace(parameters, rest_s=2 * parameters.rest_s)
@@ -77,7 +80,7 @@ class WalkingTestSegmenter:
                 self._trace.append(Instant(captured_ns, heading, None, None, None, None, None, None))
                 self._feet.remember(captured_ns, batch, i)
                 self._trail.settle(captured_ns)
-                sight = Sight(self._trace, self._trail, self._stands(captured_ns))
+                sight = Sight(self._trace, self._trail, self._stands(captured_ns - self._late_ns))
                 outputs += _sent(captured_ns, self._test.look(sight))
             self._last_ns = captured_ns
         return outputs
