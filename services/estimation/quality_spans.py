@@ -1,6 +1,8 @@
 """Seconds of a session by what the estimates were like."""
 
-from collections.abc import Iterable
+from collections.abc import Callable, Iterable, Sequence
+from operator import itemgetter
+from typing import Any
 
 from schemas.kinematics import JointState
 from schemas.rhythm import Rhythm
@@ -15,35 +17,38 @@ class Spans:
 
     def __init__(self, model: str, needed: Iterable[str], parameters: QualityParameters) -> None:
         order = [dof.name for dof in BODY_MODELS[model]]
-        self._needed = [order.index(name) for name in needed]
-        self._parameters = parameters
-        self._last_ns: int | None = None
-        self._flexions = [i for i in self._needed if "flexion" in order[i]] or self._needed
+        needed = list(needed)
+        flexions = [name for name in needed if "flexion" in name] or needed
+        self._needed = _getter([order.index(name) for name in needed])
+        self._moving = _getter([order.index(name) for name in flexions])
+        self._share = 1.0 / max(2, len(flexions))
+        self._longest_ns = round(parameters.longest_row_s * 1e9)
+        self._per_ns = 1e-9 / parameters.pace_s
         self._moving_pace = parameters.moving_pace if model == "lower_body" else parameters.moving_pace_camera
+        self._last_ns: int | None = None
         self._pace = 0.0  # rad/s, mean |rate| of the flexions, smoothed
         self.total_ns = {"spanned": 0, "estimated": 0, "moving": 0, "locked": 0}
 
     def take(self, joints: JointState, rhythm: Rhythm | None) -> None:
         """Rows of one message, with their rhythm where it was told."""
-        p, total = self._parameters, self.total_ns
-        longest_ns, count = round(p.longest_row_s * 1e9), len(self._flexions)
-        seen = all(joints.valid[i] for i in self._needed)
+        last_ns, pace = self._last_ns, self._pace
+        spanned = told = moving = locked = 0
         for now_ns, velocity, is_locked in zip(
             joints.captured_ns, joints.velocity, _locked(joints, rhythm), strict=True
         ):
-            since_ns = 0 if self._last_ns is None else now_ns - self._last_ns
-            self._last_ns = now_ns
-            total["spanned"] += since_ns
-            if since_ns > longest_ns:
+            since_ns = 0 if last_ns is None else now_ns - last_ns
+            last_ns = now_ns
+            spanned += since_ns
+            if since_ns > self._longest_ns:
                 continue
-            pace = sum([abs(velocity[i]) for i in self._flexions]) / count
-            self._pace += since_ns * 1e-9 / p.pace_s * (pace - self._pace)
-            if seen:
-                total["estimated"] += since_ns
-            if self._pace > self._moving_pace:
-                total["moving"] += since_ns
-            if is_locked:
-                total["locked"] += since_ns
+            told += since_ns
+            pace += since_ns * self._per_ns * (self._share * sum(map(abs, self._moving(velocity))) - pace)
+            moving += since_ns if pace > self._moving_pace else 0
+            locked += since_ns if is_locked else 0
+        self._last_ns, self._pace = last_ns, pace
+        estimated = told if all(self._needed(joints.valid)) else 0
+        parts = {"spanned": spanned, "estimated": estimated, "moving": moving, "locked": locked}
+        self.total_ns = {name: so_far + parts[name] for name, so_far in self.total_ns.items()}
 
     def seconds(self) -> dict[str, float]:
         """The sums so far, s, by the fields of a DataQuality."""
@@ -57,6 +62,11 @@ class Spans:
         """Inverse of `snapshot`."""
         self._last_ns, self._pace = state["last_ns"], state["pace"]
         self.total_ns = dict(state["total_ns"])
+
+
+def _getter(places: list[int]) -> Callable[[Sequence[Any]], tuple[Any, ...]]:
+    """Values at these places of a row, always as a tuple: a lone place is taken twice."""
+    return itemgetter(*(places if len(places) > 1 else places * 2))
 
 
 def take_outputs(spans: Spans, outputs: Iterable[Output]) -> None:
