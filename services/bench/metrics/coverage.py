@@ -19,7 +19,7 @@ SPEEDS: dict[str, tuple[float, ...]] = {
 """m/s, by kind of gait."""
 FIRST_SEED = 4001
 """Persons that are scored; those of 2001 to 2032 and of 3001 to 3016 have set the parameters."""
-PERSONS = 1
+PERSONS = 2
 """Of each kind at each speed."""
 SETTING = "duration=40&tape=0.03&soft_tissue=0.02"
 ESTIMATOR = "rhythmic_ekf"
