@@ -94,4 +94,4 @@ def is_right(case: Case, judge: Judge) -> bool:
 
 def share(cases: Sequence[Case], holds: Callable[[Case], bool]) -> float:
     """% of the cases."""
-    return 100.0 * sum(map(holds, cases)) / len(cases) if cases else math.nan
+    return 100.0 * float(sum(map(holds, cases))) / len(cases) if cases else math.nan

@@ -42,7 +42,7 @@ class ErrorModel:
         return float(np.sqrt(own + self.day_sd**2 * (before**2 + after**2)))
 
     def _visit(self, rng: np.random.Generator, speed: float, own: float) -> Metric:
-        value = speed * (1.0 + own + self.day_sd * rng.standard_normal())
+        value = float(speed * (1.0 + own + self.day_sd * rng.standard_normal()))
         template = self.templates[rng.integers(len(self.templates))]
         low, high = interval(template)
         assert template.value is not None

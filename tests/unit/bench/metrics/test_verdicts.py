@@ -1,4 +1,5 @@
-from dataclasses import replace
+import json
+from dataclasses import asdict, replace
 
 import numpy as np
 import pytest
@@ -9,12 +10,14 @@ from services.bench.metrics.verdict_cases import (
     case_of,
     is_right,
     ours,
+    share,
     strides_alone,
     threshold,
     threshold_alone,
 )
 from services.bench.metrics.verdict_model import ErrorModel, measured_model
 from services.bench.metrics.verdict_visits import SETTING, Coming, Told, judged
+from services.bench.scoreboard import at_least
 from services.ingest.synthetic.parameters import WalkParameters
 from services.ingest.synthetic.patients.walk import PatientWalk
 from services.progress.estimates import Estimate
@@ -64,7 +67,10 @@ def test_thresholds_are_those_of_the_true_band():
 
 @pytest.mark.parametrize(("gain", "verdict"), [(0.0, WITHIN), (0.05, WITHIN), (0.25, REAL), (-0.25, REAL)])
 def test_visits_without_error_are_judged_as_they_were(gain, verdict):
-    for found in verdicts.drawn_cases(QUIET, 0.6, gain, patients=3):
+    cases = verdicts.drawn_cases(QUIET, 0.6, gain, patients=3)
+    # Figures are written as JSON, which knows no numbers of numpy.
+    assert json.dumps(asdict(at_least("right", share(cases, lambda case: is_right(case, ours)), "%", 95.0)))
+    for found in cases:
         assert found.verdict is verdict
         assert found.change == pytest.approx(gain)
 
