@@ -10,7 +10,7 @@ from schemas.metrics import DoubtKind
 class SharedErrorParameters:
     """Standard deviations of what all strides of a session have alike.
 
-    Where no other source stands, chosen on synthetic patients (seeds 2001 to 2032, 3001 to 3016 and 4001 to 4032; bodies
+    Where no other source stands, chosen on synthetic patients (seeds 2001 to 2032, 3001 to 3016, 4001 to 4032; bodies
     measured to 3 %, soft tissue) so that their truth lies within the intervals; `ambula bench metrics coverage` scores
     others.
     """
