@@ -15,7 +15,9 @@ from services.exports.session import facts_of
 
 @pytest.fixture(scope="module")
 def opensim():
-    return pytest.importorskip("opensim")
+    library = pytest.importorskip("opensim")
+    library.Logger.removeFileSink()  # else it writes opensim.log into the folder that the tests run in
+    return library
 
 
 def markers(opensim, path):
