@@ -50,7 +50,9 @@ def test_angles_have_the_deviation_of_their_own_curve(description):
     curves = {"hip_flexion_left": 0.2, "hip_flexion_right": 0.0, "hip_internal_rotation_left": 0.1}
     assert std(found, "hip_extension_peak", 0.2, "left", **curves) == pytest.approx(math.hypot(0.06, 0.05))
     assert std(found, "hip_extension_peak", 0.2, "right", **curves) == pytest.approx(0.06)
-    assert std(found, "hip_rotation_mean", 0.0, "left", **curves) == pytest.approx(math.hypot(P.levels["hip_rotation"], 0.025))
+    assert std(found, "hip_rotation_mean", 0.0, "left", **curves) == pytest.approx(
+        math.hypot(P.levels["hip_rotation"], 0.025)
+    )
     assert std(found, "hip_flexion_range", 0.7, "left", **curves) == P.extents["hip_flexion"]
 
 
