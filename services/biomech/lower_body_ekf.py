@@ -15,6 +15,7 @@ from schemas.vocabulary import LOWER_BODY, Segment
 from services.biomech.companions import CompanionModel, companion_tables
 from services.biomech.kernels.bundle import advance, tie
 from services.biomech.kernels.fixed import LANES, width_of
+from services.biomech.kernels.soundness import is_sound
 from services.biomech.kernels.tables import (
     Body,
     Columns,
@@ -175,9 +176,8 @@ class LowerBodyEkf:
 
     def is_sound(self) -> bool:
         """Finite throughout, and no joint faster than anything that moves. Translations drift: no sensor sees them."""
-        rates = self.x[1, self.model.first_rotation :]
-        finite = all(np.isfinite(array).all() for array in (self.x, self.companions.x, self._variances))
-        return bool(finite and np.abs(rates).max() < FASTEST_JOINT)
+        first = self.model.first_rotation
+        return bool(is_sound(self.x, self.companions.x, self._variances, first, FASTEST_JOINT))
 
     def start_over(self) -> None:
         """Upright and at rest, as at the start."""

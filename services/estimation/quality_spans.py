@@ -65,7 +65,12 @@ class Spans:
 
 
 def _getter(places: list[int]) -> Callable[[Sequence[Any]], tuple[Any, ...]]:
-    """Values at these places of a row, always as a tuple: a lone place is taken twice."""
+    """Values at these places of a row, always as a tuple: a lone place is taken twice.
+
+    Lone feet or a lone back tell no joint: there are no places.
+    """
+    if not places:
+        return lambda _: ()
     return itemgetter(*(places if len(places) > 1 else places * 2))
 
 

@@ -31,7 +31,16 @@ def kernel(function: Function) -> Function:
 
     Kernels that call it take it in: a call would copy the tables' sixty array headers.
     """
-    dispatcher = numba.njit(forceinline=True, **OPTIONS)(function)
+    return _compiled(function, OPTIONS)
+
+
+def strict_kernel(function: Function) -> Function:
+    """The same for numbers that may not be finite: fastmath would take every number for finite."""
+    return _compiled(function, OPTIONS | {"fastmath": False})
+
+
+def _compiled(function: Function, options: dict[str, Any]) -> Function:
+    dispatcher = numba.njit(forceinline=True, **options)(function)
     cache_file = dispatcher._cache._cache_file
     if not hasattr(cache_file, "_source_stamp"):
         raise RuntimeError("this numba keeps its cache stamp elsewhere: adapt services/biomech/kernels/compiled.py")

@@ -74,7 +74,6 @@ class LowerBodyFilter:
         self._coasting = Coasting(self.model, self._segments, parameters.coasting) if coasts else None
         self._followed: frozenset[Segment] = frozenset()
         self._starts_moving = calibrated.from_walking
-        self._may_diverge = parameters.measurement.gyro_sees_position or parameters.measurement.accel_sees_motion
         self._ahead = _ahead(parameters.sample_delay / rate_hz)
         self._unmodelled = unmodelled_deviations(self.model, parameters.unmodelled)
         self._last_ns: int | None = None
@@ -165,7 +164,7 @@ class LowerBodyFilter:
         step_s = dt_s if dt_s <= self.parameters.longest_step_s else 0.0
         filled = tick if coasting is None else self._follow(coasting, tick, step_s)
         self._fuse(filled, tick.fresh, step_s)
-        if self._may_diverge and not self.ekf.is_sound():
+        if not self.ekf.is_sound():
             self._start_over(tick.captured_ns)
         if coasting is not None:
             self._gaps.lead(coasting.lead(self.ekf, step_s))
