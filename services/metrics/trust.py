@@ -127,7 +127,8 @@ def _of_sources(sources: Sources, by_name: Mapping[str, SourceQuality]) -> list[
 
 
 def _of_time(definition: Definition, quality: DataQuality) -> list[Judged]:
-    found = ruled(DoubtKind.WARM_UP, quality.moving_s)
+    # Lone feet or a lone back tell no joint, and so not when it moved.
+    found = ruled(DoubtKind.WARM_UP, quality.moving_s) if quality.moving_s > 0 else []
     if definition.basis is Basis.LENGTHS and quality.spanned_s > 0:
         found += ruled(DoubtKind.COVERAGE, quality.estimated_s / quality.spanned_s)
     return found
