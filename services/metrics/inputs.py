@@ -11,6 +11,9 @@ from services.definitions.strides import STRIDE_METRICS
 BOTH_FEET = ("step_time", "initial_double_support", "terminal_double_support", "single_support", "double_support")
 """Beginnings of the names of measures that the other foot's events belong to."""
 
+ANY_WILL_DO = "tug_"
+"""Beginning of the names of measures that the pelvis, or either leg, tells alone."""
+
 Sources = frozenset[str]
 """Names of sensors and cameras, all of them needed."""
 
@@ -33,6 +36,9 @@ class Inputs:
 
     def alternatives(self, definition: Definition, side: str | None) -> Sequence[Sources]:
         """Sets of sources any of which is enough; none where nothing is known of what it rests on."""
+        if definition.name.startswith(ANY_WILL_DO) and not self.uses_camera:
+            legs = [self._needed(Basis.KNEE, one) for one in Side]
+            return [each for each in (self._worn(Segment.PELVIS), *legs) if each]
         sides = [Side(side)] if side else list(Side)
         is_of_both = definition.name.startswith(BOTH_FEET) or (side is None and not self._is_of_either(definition))
         needed = [self._needed(definition.basis, one) for one in (list(Side) if is_of_both else sides)]

@@ -133,7 +133,7 @@ class Rule:
 
 
 RULES: Mapping[DoubtKind, Rule] = {
-    DoubtKind.FEW_CYCLES: Rule(6, None, 3, "6 cycles of each foot: PMC7558375; 3: proposal", below=True),
+    DoubtKind.FEW_CYCLES: Rule(6, 3, None, "6 cycles of each foot: PMC7558375; 3: proposal", below=True),
     DoubtKind.REJECTED_CYCLES: Rule(0.2, 0.5, 0.8, "proposal: share of the strides"),
     DoubtKind.COVERAGE: Rule(0.9, 0.7, 0.3, "proposal: share of the time", below=True),
     DoubtKind.LOSS: Rule(0.02, 0.1, 0.5, "good systems lose 0.9 % of a recording, a tenth of them over 12.8 %: faults"),

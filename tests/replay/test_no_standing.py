@@ -16,7 +16,7 @@ def test_sit_to_stand_without_a_mark_is_refused_and_says_what_to_do() -> None:
     stream = [m for m in iter_messages(source) if m.stream in node.streams and not m.envelope.final]
     outputs = [output for message in stream for output in node.step(message)] + node.finish()
     poses = [output.payload for output in outputs if output.signal.name == "live_pose"]
-    assert {output.signal.name for output in outputs} == {"live_pose"}
+    assert {output.signal.name for output in outputs} == {"live_pose", "data_quality"}
     assert {pose.message for pose in poses} <= {
         "Stand still, upright",
         "Sitting, not standing: please stand up straight",

@@ -9,7 +9,7 @@ from services.report.charts.canvas import SIDE_DASHES, TEXT_SIZE, Box, Canvas
 from services.report.charts.colours import REFERENCE, SIDE, WHOLE
 from services.report.charts.labels import Label, apart
 
-WIDTH, HEIGHT = 168.0, 146.0
+WIDTH, HEIGHT = 168.0, 174.0
 LEFT, TOP, RIGHT, BOTTOM = 24.0, 18.0, 12.0, 24.0
 LEAST_RANGE_DEG = 20.0
 """deg: smaller movements are not drawn larger than this, so that noise does not look like motion."""

@@ -11,6 +11,8 @@ from services.report.charts.labels import Label, apart
 
 WIDTH, HEIGHT = 136.0, 106.0
 LEFT, TOP, RIGHT, BOTTOM = 24.0, 20.0, 12.0, 14.0
+MOST_NUMBERS = 10
+"""Visits that have room for their numbers; of more, every second or third has its own."""
 MARK = 3.2
 """Half the size of a mark."""
 
@@ -70,7 +72,7 @@ def progress_chart(
     _bands(canvas, plot, lines, reference)
     digits = digits_of(y_ticks[1] - y_ticks[0])
     texts = [f"{value:.{digits}f}".replace("-", "\u2212").replace(".", labels.decimal_mark) for value in y_ticks]
-    draw_axes(canvas, plot, list(zip(y_ticks, texts, strict=True)), [(number, str(number)) for number in numbers])
+    draw_axes(canvas, plot, list(zip(y_ticks, texts, strict=True)), _visit_ticks(numbers))
     for treatment in treatments:
         x = plot.across(min(max(treatment.at, across[0]), across[1]))
         canvas.line((x, TOP), (x, plot.box.bottom), LINE, 0.9, "3 2")
@@ -83,8 +85,13 @@ def progress_chart(
     for label in apart(ends, TEXT_SIZE):
         canvas.text((plot.box.right + 3, label.at + TEXT_SIZE * 0.35), label.text, colour=label.colour, bold=True)
     canvas.text((0, 7.5), labels.y_axis, colour=SOFT_INK)
-    canvas.text((WIDTH, HEIGHT - 3.5), labels.x_axis, anchor="end", colour=SOFT_INK)
+    canvas.text((0, HEIGHT - 3.5), labels.x_axis, colour=SOFT_INK)
     return canvas.svg(name, labels.title, labels.description)
+
+
+def _visit_ticks(numbers: Sequence[int]) -> list[tuple[float, str]]:
+    every = -(-len(numbers) // MOST_NUMBERS)
+    return [(number, str(number)) for number in numbers[::every]]
 
 
 def _y_ticks(lines: Sequence[ProgressLine], reference: tuple[float, float] | None) -> list[float]:

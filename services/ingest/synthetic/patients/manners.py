@@ -107,7 +107,7 @@ def _hemiparetic(usual: Manner, side: Side, rng: np.random.Generator) -> Manner:
         knee_gives=0.5 * leg.knee_gives,
         toes_at_contact=math.radians(rng.uniform(-4, 4)),
         heel_rises_after=rng.uniform(0.66, 0.74),
-        push=1.0,
+        push=rng.uniform(0.3, 0.6),
         circumduction=rng.uniform(0.03, 0.08),
         hike=math.radians(rng.uniform(3, 7)),
         foremost_before_contact_s=rng.uniform(0.02, 0.06),
