@@ -116,15 +116,15 @@ class SessionTotals:
 
     def _counting(self, parameters: MetricsParameters) -> tuple[Sums, dict[Side, int]]:
         """The sums over the strides that count, and how many of each foot are left out as start or stop."""
-        newest = Sums()
-        for kept in self._newest.values():
-            if kept is not None and _counts(kept.stride):
-                newest.add(kept.stride)
-        ends = self._ends.merged(newest)
-        seen = [side for side in Side if self._steady.strides[side] + ends.strides[side]]
+        newest = [kept.stride for kept in self._newest.values() if kept is not None and _counts(kept.stride)]
+        at_ends = {side: count + sum(one.side is side for one in newest) for side, count in self._ends.strides.items()}
+        seen = [side for side in Side if self._steady.strides[side] + at_ends[side]]
         if seen and all(self._steady.strides[side] >= parameters.least_steady_strides for side in seen):
-            return self._steady, ends.strides
-        return self._steady.merged(ends), dict.fromkeys(Side, 0)
+            return self._steady, at_ends
+        last = Sums()
+        for stride in newest:
+            last.add(stride)
+        return self._steady.merged(self._ends.merged(last)), dict.fromkeys(Side, 0)
 
     def _numbers(self, sums: Sums, left_out: dict[Side, int]) -> list[Metric]:
         numbers = self._unused | {(COUNTED, side): sums.strides[side] for side in Side}

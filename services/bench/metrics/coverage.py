@@ -7,21 +7,14 @@ import numpy as np
 from services.bench.metrics.coverage_scores import FAMILIES, Family, score
 from services.bench.metrics.coverage_sessions import measured_metrics
 from services.bench.metrics.coverage_truth import true_metrics
+from services.bench.metrics.patients import SETTING, SPEEDS
 from services.bench.report import Section, Table, number
 from services.bench.scoreboard import Row, informative
 
-SPEEDS: dict[str, tuple[float, ...]] = {
-    "healthy": (0.5, 0.8, 1.2, 1.6),
-    "hemiparetic": (0.3, 0.4, 0.6, 0.8),
-    "stiff_knee": (0.4, 0.7, 1.0, 1.3),
-    "steppage": (0.4, 0.8, 1.1, 1.4),
-}
-"""m/s, by kind of gait."""
 FIRST_SEED = 5001
 """Persons that are scored; those of 2001 to 2032, 3001 to 3016 and 4001 to 4032 have set the parameters."""
 PERSONS = 2
 """Of each kind at each speed."""
-SETTING = "duration=40&tape=0.03&soft_tissue=0.02"
 ESTIMATOR = "rhythmic_ekf"
 STEPS = PERSONS * sum(map(len, SPEEDS.values()))
 LEAST, MOST = 90.0, 99.0
