@@ -10,6 +10,8 @@ from urllib.parse import urlsplit
 from selenium.webdriver import Chrome, ChromeOptions
 from selenium.webdriver.chrome.service import Service
 
+from services.cli.door import Door
+
 FLAGS = (
     "--headless",
     "--no-sandbox",
@@ -47,6 +49,13 @@ def open_browser(width: int = 1366, height: int = 768, *flags: str) -> Iterator[
         yield browser
     finally:
         browser.quit()
+
+
+def admit(browser: Chrome, door: Door) -> None:
+    """Give the browser somebody's sign-in."""
+    name, value = door.cookie
+    cookie = {"name": name, "value": value, "url": door.url, "httpOnly": True, "sameSite": "Strict"}
+    browser.execute_cdp_cmd("Network.setCookie", cookie)
 
 
 def complaints(browser: Chrome) -> list[str]:

@@ -1,15 +1,13 @@
 """A patient to be shown: several real visits of a simulated one who walks faster each time, weeks apart."""
 
-import json
 import time
-import urllib.error
-import urllib.request
 from collections.abc import Sequence
 from dataclasses import dataclass
 from datetime import UTC, datetime, timedelta
 from pathlib import Path
-from typing import Any
 
+from services.cli.door import Door
+from services.gateway.access.scope import EVERYTHING
 from services.gateway.database import open_database
 from services.gateway.settings import GatewaySettings
 from services.gateway.tables import SessionRow
@@ -38,15 +36,14 @@ class Shown:
     sessions: list[str]
 
 
-def visits(url: str, data: Path, patience_s: float) -> Shown:
+def visits(door: Door, data: Path, patience_s: float) -> Shown:
     """Walk all visits as fast as the services follow, then move them apart in the database at `data`."""
-    _until_answered(url, patience_s)
-    code = str(_ask(url, "patients", PERSON)["code"])
+    code = str(door.ask("patients", PERSON)["code"])
     for date, kind in TREATMENTS:
-        _ask(url, f"patients/{code}/treatments", {"date": date, "kind": kind})
-    walks = [_begin(url, code, speed) for speed in SPEEDS]
+        door.ask(f"patients/{code}/treatments", {"date": date, "kind": kind})
+    walks = [_begin(door, code, speed) for speed in SPEEDS]
     end = time.monotonic() + patience_s
-    while not all(_is_kept(url, walk) for walk in walks):
+    while not all(_is_kept(door, walk) for walk in walks):
         if time.monotonic() > end:
             raise TimeoutError(f"the walks did not end within {patience_s:.0f} s")
         time.sleep(0.5)
@@ -54,42 +51,22 @@ def visits(url: str, data: Path, patience_s: float) -> Shown:
     return Shown(code, walks)
 
 
-def _until_answered(url: str, patience_s: float) -> None:
-    end = time.monotonic() + patience_s
-    while True:
-        try:
-            _ask(url, "patients")
-        except urllib.error.URLError:
-            if time.monotonic() > end:
-                raise
-            time.sleep(0.2)
-        else:
-            return
-
-
-def _begin(url: str, code: str, speed: float) -> str:
+def _begin(door: Door, code: str, speed: float) -> str:
     wish = {"source": WALK.format(speed=speed), "speed": None, "patient": code, "conditions": SAID}
-    return str(_ask(url, "sessions", wish)["id"])
+    return str(door.ask("sessions", wish)["id"])
 
 
-def _is_kept(url: str, walk: str) -> bool:
+def _is_kept(door: Door, walk: str) -> bool:
     """Over, and sealed by the archive, so that a report can name its recording."""
-    files = _ask(url, f"sessions/{walk}/recordings")
-    return _ask(url, f"sessions/{walk}")["state"] in DONE and bool(files) and all(each["sha256"] for each in files)
+    files = door.ask(f"sessions/{walk}/recordings")
+    return door.ask(f"sessions/{walk}")["state"] in DONE and bool(files) and all(each["sha256"] for each in files)
 
 
 def _move_apart(data: Path, walks: Sequence[str]) -> None:
     database = open_database(GatewaySettings(data_dir=data, database="").database_url)
     try:
-        with database.transaction() as records:
+        with database.transaction(EVERYTHING) as records:
             for place, walk in enumerate(reversed(walks)):
                 records.get_one(SessionRow, walk).started = LAST - place * BETWEEN
     finally:
         database.close()
-
-
-def _ask(url: str, path: str, body: dict[str, Any] | None = None) -> Any:
-    data = None if body is None else json.dumps(body).encode()
-    request = urllib.request.Request(f"{url}/v1/{path}", data, {"Content-Type": "application/json"})
-    with urllib.request.urlopen(request, timeout=60) as answer:
-        return json.load(answer)

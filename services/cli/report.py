@@ -24,13 +24,17 @@ class ReportRefused(Exception):
     """The gateway gave no report; says why and what to do."""
 
 
+KEY_VARIABLE = "AMBULA_KEY"
+"""A key of the gateway, as an administrator makes it; never an argument, which other users of the machine can see."""
+
+
 def report(
     session: Annotated[str, typer.Argument(metavar="SESSION", help="id of a stored session")],
     file: Annotated[Path, typer.Option("--out", help=f"file to write; its ending chooses: {', '.join(FORMS)}")],
     language: Annotated[Language, typer.Option(help="language of the report")] = Language.ENGLISH,
     url: Annotated[str, typer.Option(help="where the gateway answers")] = "http://127.0.0.1:8000",
 ) -> None:
-    """Write the report of a session as PDF, as one page of HTML or as its content."""
+    """Write the report of a session as PDF, as one page of HTML or as its content. AMBULA_KEY holds a key."""
     with told(ReportRefused, OSError):
         if file.suffix not in FORMS:
             raise ReportRefused(f"{file}: the ending must be one of {', '.join(FORMS)}")
@@ -46,7 +50,9 @@ def _fetched(url: str) -> bytes:
     if not url.startswith(("http://", "https://")):
         raise ReportRefused(f"{url}: the gateway's address begins with http:// or https://")
     try:
-        with urllib.request.urlopen(url, timeout=TIMEOUT_S) as answer:
+        key = os.environ.get(KEY_VARIABLE)
+        request = urllib.request.Request(url, headers={"Authorization": f"Bearer {key}"} if key else {})
+        with urllib.request.urlopen(request, timeout=TIMEOUT_S) as answer:
             body = answer.read()
             assert isinstance(body, bytes)
             return body

@@ -1,11 +1,9 @@
 """Pictures of pages and reports, with the whole stack behind them: `python -m services.cli.screenshots [FOLDER]`."""
 
-import json
 import socket
 import sys
 import tempfile
 import time
-import urllib.request
 from collections.abc import Callable
 from dataclasses import dataclass
 from pathlib import Path
@@ -19,6 +17,7 @@ from services.bus.settings import BusSettings
 from services.cli import browser as browsers
 from services.cli import live, picture_visits
 from services.cli.console import err, out
+from services.cli.door import Door
 from services.cli.supervisor import Supervisor
 from services.ingest.errors import SourceError
 from services.ingest.source import open_source
@@ -53,20 +52,21 @@ def main() -> int:
         settings = BusSettings(router=f"tcp/127.0.0.1:{_free_port()}")
         with Supervisor(SERVICES, settings, environment=environment) as stack, browsers.open_browser() as page:
             stack.wait_until_ready(timeout_s=180)
-            camera = _Camera(page, f"http://127.0.0.1:{port}", folder)
-            _take_patient(camera, Path(data))
+            door = Door.of_first_administrator(f"http://127.0.0.1:{port}", Path(data))
+            browsers.admit(page, door)
+            camera = _Camera(page, door.url, folder)
+            _take_patient(camera, door, Path(data))
             _take_sessions(camera, settings)
     return 0
 
 
-def _take_patient(camera: "_Camera", data: Path) -> None:
-    patient = picture_visits.visits(camera.url, data, PATIENCE_S)
+def _take_patient(camera: "_Camera", door: Door, data: Path) -> None:
+    patient = picture_visits.visits(door, data, PATIENCE_S)
     last = patient.sessions[-1]
     progress = f"/#/patients/{patient.code}"
     camera.take("progress", progress, lambda: camera.shown(".verdict", "real change"), height=1110)
     camera.take("report", f"/#/sessions/{last}", lambda: camera.shown(".sheet", "m/s"), height=1240)
-    with urllib.request.urlopen(f"{camera.url}/v1/sessions/{last}/report?language=en", timeout=60) as answer:
-        report = Report.model_validate(json.load(answer))
+    report = Report.model_validate(door.ask(f"sessions/{last}/report?language=en"))
     for number, picture in enumerate(press().pictures(report, PAPER_PIXELS_PER_INCH), start=1):
         camera.keep(f"report_page_{number}", picture)
 

@@ -6,7 +6,9 @@ from services.bus.connection import Bus
 from services.bus.settings import BusSettings
 from services.cli import live
 from services.cli.console import err, out
+from services.cli.door import ACCOUNT_FILE, Door
 from services.cli.supervisor import Supervisor
+from services.gateway.accounts.first_run import code_file
 from services.gateway.settings import GatewaySettings
 from services.ingest.errors import SourceError
 from services.ingest.source import open_source
@@ -28,11 +30,26 @@ def run_stack(*, demo: bool, seconds: float | None) -> int:
     with Supervisor(SERVICES, settings) as stack:
         out.print("starting the services (the first start compiles the filters: up to two minutes) ...")
         stack.wait_until_ready(timeout_s=180)
-        out.print(f"\n  Open  [bold]{GatewaySettings().url}[/bold]  in a browser. Ctrl-C stops everything.\n")
+        gateway = GatewaySettings()
+        out.print(f"\n  Open  [bold]{gateway.url}[/bold]  in a browser. Ctrl-C stops everything.")
+        _tell_how_to_sign_in(gateway, demo=demo)
         if demo:
             _start_demo(stack.settings)
         stack.run(seconds)
     return 0
+
+
+def _tell_how_to_sign_in(gateway: GatewaySettings, *, demo: bool) -> None:
+    if demo:
+        try:
+            Door.of_first_administrator(gateway.url, gateway.data_dir)
+            login, password = (gateway.data_dir / ACCOUNT_FILE).read_text(encoding="utf-8").split()
+            out.print(f"  Sign in as  [bold]{login}[/bold]  with  [bold]{password}[/bold]\n")
+        except PermissionError:
+            out.print("  Sign in with your account.\n")
+    elif code_file(gateway.data_dir).exists():
+        code = code_file(gateway.data_dir).read_text(encoding="utf-8").strip()
+        out.print(f"  Nobody has an account yet. The code for the first administrator is  [bold]{code}[/bold]\n")
 
 
 def _start_demo(settings: BusSettings) -> None:

@@ -10,6 +10,13 @@ from fastapi import FastAPI
 from fastapi.openapi.utils import get_openapi
 
 from services.gateway import pages, problems
+from services.gateway.access.rules import check_rules, described
+from services.gateway.access.scope import EVERYTHING
+from services.gateway.accounts import first_run
+from services.gateway.accounts.passwords import Passwords
+from services.gateway.accounts.records import has_accounts
+from services.gateway.accounts.routes import router as accounts
+from services.gateway.audit.trail import AuditTrail
 from services.gateway.context import Gateway
 from services.gateway.control import Control
 from services.gateway.database import open_database
@@ -36,6 +43,7 @@ from services.gateway.visits.routes import router as visits
 DESCRIPTION = "Patients, sessions, metrics and recordings of one Ambula site. Research software, not a medical device."
 
 ROUTERS = (
+    accounts,
     patients,
     visits,
     progress,
@@ -52,11 +60,13 @@ ROUTERS = (
     live_routes,
 )
 
+ROUTES = [route for router in ROUTERS for route in router.routes]
+
 
 def create_app(settings: GatewaySettings, live: LiveHub, control: Control) -> FastAPI:
     """Put the gateway together. Opens the database; raises DatabaseError when it cannot be used."""
     database = open_database(settings.database_url)
-    keeper = SessionKeeper(database, live, live.parameters)
+    keeper = SessionKeeper(database, live, live.parameters, settings.clinic)
 
     @asynccontextmanager
     async def lifespan(_: FastAPI) -> AsyncIterator[None]:
@@ -74,16 +84,27 @@ def create_app(settings: GatewaySettings, live: LiveHub, control: Control) -> Fa
         redoc_url=None,
         openapi_url="/v1/openapi.json",
     )
-    app.state.gateway = Gateway(settings, live.parameters, database, keeper, live, control)
+    app.state.gateway = Gateway(settings, live.parameters, database, keeper, live, control, Passwords())
     problems.install(app)
+    check_rules(ROUTES)
     for router in ROUTERS:
         app.include_router(router)
     pages.install(app, settings.pages_dir)
+    app.add_middleware(AuditTrail, database=database)
     app.add_middleware(BodyLimit, most_bytes=live.parameters.most_body_bytes)
     app.add_middleware(HostNames, names=settings.host_names)
     app.add_middleware(SecurityHeaders)
     app.openapi = lambda: _openapi(app)  # type: ignore[method-assign]
     return app
+
+
+def first_run_code(app: FastAPI) -> str | None:
+    """The code for the first administrator, written where the gateway's user can read it; None when it is past."""
+    gateway: Gateway = app.state.gateway
+    with gateway.database.transaction(EVERYTHING) as database:
+        if has_accounts(database):
+            return None
+    return first_run.write_code(gateway.settings.data_dir)
 
 
 def _openapi(app: FastAPI) -> dict[str, Any]:
@@ -96,5 +117,6 @@ def _openapi(app: FastAPI) -> dict[str, Any]:
         parts["ProblemOut"] = schema
         for unused in ("HTTPValidationError", "ValidationError"):
             parts.pop(unused, None)
+        described(ROUTES, document)
         app.openapi_schema = document
     return app.openapi_schema

@@ -1,11 +1,17 @@
 """What every route can reach, and the parameters that routes share."""
 
-from dataclasses import dataclass
+from collections.abc import Iterator
+from contextlib import contextmanager
+from dataclasses import dataclass, replace
 from typing import Annotated
 
 from fastapi import Depends, Path, Query
+from sqlalchemy.orm import Session
 from starlette.requests import HTTPConnection
 
+from services.gateway.access.caller import Caller
+from services.gateway.access.identify import Identified
+from services.gateway.accounts.passwords import Passwords
 from services.gateway.control import Control
 from services.gateway.database import Database
 from services.gateway.live.hub import LiveHub
@@ -16,7 +22,7 @@ from services.gateway.settings import GatewaySettings
 
 @dataclass(frozen=True)
 class Gateway:
-    """The parts of one running gateway."""
+    """The parts of one running gateway, and who asks for them; `caller` None: nobody yet."""
 
     settings: GatewaySettings
     parameters: GatewayParameters
@@ -24,6 +30,20 @@ class Gateway:
     keeper: SessionKeeper
     live: LiveHub
     control: Control
+    passwords: Passwords
+    caller: Caller | None = None
+
+    @property
+    def known_caller(self) -> Caller:
+        """Who asks, in a route that needs somebody known."""
+        assert self.caller is not None
+        return self.caller
+
+    @contextmanager
+    def transaction(self) -> Iterator[Session]:
+        """A transaction in which only what the caller may see exists."""
+        with self.database.transaction(self.known_caller.scope) as database:
+            yield database
 
 
 def of(connection: HTTPConnection) -> Gateway:
@@ -33,7 +53,14 @@ def of(connection: HTTPConnection) -> Gateway:
     return gateway
 
 
-Context = Annotated[Gateway, Depends(of)]
+def of_caller(connection: HTTPConnection, caller: Identified) -> Gateway:
+    """The gateway as the caller may use it. Raises a 401 problem when nobody known asks."""
+    return replace(of(connection), caller=caller)
+
+
+Context = Annotated[Gateway, Depends(of_caller)]
+Parts = Annotated[Gateway, Depends(of)]
+"""For routes that anybody may call, and for the caller's own account."""
 
 Offset = Annotated[int, Query(ge=0, description="number of entries to leave out")]
 Limit = Annotated[int, Query(ge=1, le=100, description="number of entries at most")]

@@ -10,6 +10,8 @@ from alembic.config import Config
 from sqlalchemy import Engine, create_engine, event, make_url, text
 from sqlalchemy.orm import Session, sessionmaker
 
+from services.gateway.access.scope import SCOPE, Scope, guard, narrow
+
 MIGRATIONS = Path(__file__).parent / "migrations"
 
 
@@ -23,11 +25,17 @@ class Database:
     def __init__(self, url: str) -> None:
         self.engine = _engine(url)
         self._sessions = sessionmaker(self.engine, expire_on_commit=False)
+        event.listen(self._sessions, "do_orm_execute", narrow)
+        event.listen(self._sessions, "before_flush", guard)
 
     @contextmanager
-    def transaction(self) -> Iterator[Session]:
-        """A session that commits at the end, or rolls back when something is raised."""
+    def transaction(self, scope: Scope) -> Iterator[Session]:
+        """A session in which only what the scope has exists. Commits at the end, rolls back when something is raised.
+
+        Raises OutOfScope when what is written is not the scope's.
+        """
         with self._sessions.begin() as session:
+            session.info[SCOPE] = scope
             yield session
 
     def migrate(self, revision: str = "head") -> None:

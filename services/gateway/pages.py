@@ -7,6 +7,7 @@ from fastapi import FastAPI
 from fastapi.responses import FileResponse, RedirectResponse, Response
 from starlette.staticfiles import StaticFiles
 
+from services.gateway.access.rules import OPEN_TO_ALL
 from services.gateway.problems import problem_response
 
 
@@ -23,15 +24,15 @@ def install(app: FastAPI, pages_dir: Path) -> None:
             "Run `make web`; the API at /v1 works without.",
         )
 
-    @app.get("/", include_in_schema=False)
+    @app.get("/", include_in_schema=False, dependencies=OPEN_TO_ALL)
     def first_page() -> Response:
         return page("index.html")
 
-    @app.get("/docs", include_in_schema=False)
+    @app.get("/docs", include_in_schema=False, dependencies=OPEN_TO_ALL)
     def api_page() -> Response:
         return page("docs.html")
 
-    @app.get("/favicon.ico", include_in_schema=False)
+    @app.get("/favicon.ico", include_in_schema=False, dependencies=OPEN_TO_ALL)
     def icon() -> Response:
         return RedirectResponse("/static/favicon.svg", HTTPStatus.MOVED_PERMANENTLY)
 

@@ -39,3 +39,27 @@ class GatewayParameters:
 
     most_socket_bytes: int = 8_192
     """Bytes of one message that a browser may send over a live connection."""
+
+    sign_in_idle_s: float = 3600.0
+    """s without any request after which a sign-in ends; an open page asks now and then, so this is a closed one."""
+
+    sign_in_most_s: float = 12 * 3600.0
+    """s after which everybody signs in again: a working day."""
+
+    ask_again_s: float = 15.0
+    """s after which an open live connection asks again whether its sign-in still holds, and for whom."""
+
+    renewal_grace_s: float = 60.0
+    """s in which the secret before the last one is still taken: requests that were under way."""
+
+    confirmed_s: float = 300.0
+    """s for which a password that was asked for again counts: erasing, merging, exporting the audit."""
+
+    free_failures: int = 5
+    """Number of wrong passwords that cost nothing but their time."""
+
+    first_lock_s: float = 30.0
+    """s that an account is closed after the next one; doubles each time."""
+
+    longest_lock_s: float = 3600.0
+    """s that an account is closed at most, so that nobody can be shut out for good."""

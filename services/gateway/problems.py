@@ -9,10 +9,16 @@ from fastapi.responses import JSONResponse
 from pydantic import BaseModel, ConfigDict, Field
 from sqlalchemy.exc import OperationalError
 from starlette.exceptions import HTTPException
+from starlette.requests import HTTPConnection
+from starlette.websockets import WebSocket
 
+from services.gateway.access.scope import OutOfScope
 from services.gateway.headers import HEADERS
 
 MEDIA_TYPE = "application/problem+json"
+
+SOCKET_CODE = 4000
+"""A live connection that is refused is closed with this and the HTTP status: 4401, 4403."""
 
 
 class Fault(BaseModel):
@@ -67,8 +73,13 @@ def problem_response(
     return JSONResponse(body.model_dump(), status_code=status.value, media_type=MEDIA_TYPE)
 
 
-def _from_problem(_: Request, error: Exception) -> JSONResponse:
+async def _from_problem(asked: HTTPConnection, error: Exception) -> JSONResponse | None:
     assert isinstance(error, Problem)
+    if isinstance(asked, WebSocket):
+        # Only an accepted connection can tell a page why it is closed.
+        await asked.accept()
+        await asked.close(SOCKET_CODE + error.status, error.detail)
+        return None
     return problem_response(error.status, error.detail, error.next_step)
 
 
@@ -95,6 +106,10 @@ def _from_database(_: Request, error: Exception) -> JSONResponse:
     )
 
 
+def _from_scope(_: Request, error: Exception) -> JSONResponse:
+    return problem_response(HTTPStatus.FORBIDDEN, f"This can not be changed from here: {error}.", "Ask their clinic.")
+
+
 def _from_bug(_: Request, __: Exception) -> JSONResponse:
     # This answer is given outside of all middleware, so it brings the headers itself.
     response = problem_response(
@@ -108,9 +123,10 @@ def _from_bug(_: Request, __: Exception) -> JSONResponse:
 
 def install(app: FastAPI) -> None:
     """Make every error of the app a problem."""
-    app.add_exception_handler(Problem, _from_problem)
+    app.add_exception_handler(Problem, _from_problem)  # type: ignore[arg-type]
     app.add_exception_handler(RequestValidationError, _from_validation)
     app.add_exception_handler(HTTPException, _from_http)
+    app.add_exception_handler(OutOfScope, _from_scope)
     app.add_exception_handler(OperationalError, _from_database)
     app.add_exception_handler(Exception, _from_bug)
 

@@ -8,7 +8,8 @@ import uvicorn
 from services.bus.lifetime import call_on_stop
 from services.bus.logs import event, set_up_logging
 from services.bus.settings import BusSettings
-from services.gateway.app import create_app
+from services.gateway.accounts import first_run
+from services.gateway.app import create_app, first_run_code
 from services.gateway.bus_control import BusControl
 from services.gateway.bus_feed import BusFeed, BusLink
 from services.gateway.database import DatabaseError
@@ -45,6 +46,10 @@ def serve() -> int:
     server = uvicorn.Server(config)
     call_on_stop(partial(setattr, server, "should_exit", True))
     logger.info(event("serving", url=settings.url))
+    if first_run_code(app) is not None:
+        logger.warning(
+            event("first_run", code_in=first_run.code_file(settings.data_dir), open=f"{settings.url}/#/first-run")
+        )
     try:
         server.run()
     finally:

@@ -27,6 +27,7 @@ class GatewaySettings(BaseSettings):
     references: str = Field(
         default="", description="folders of the clinic's own reference sets, as a path list; the shipped ones come last"
     )
+    clinic: str = Field(default="main", description="id of the clinic that sessions nobody asked for belong to")
     pages_dir: Path = Field(default=DIST, description="the folder with the built pages")
 
     @property

@@ -26,12 +26,25 @@ class Base(DeclarativeBase):
     """Base of the mapped classes."""
 
 
+class ClinicRow(Base):
+    """A clinic of the site. Patients and sessions belong to one; `keep_days` None: recordings are kept for good."""
+
+    __tablename__ = "clinic"
+
+    id: Mapped[str] = mapped_column(String(32), primary_key=True)
+    name: Mapped[str] = mapped_column(String(100))
+    keep_days: Mapped[int | None] = mapped_column(Integer)
+    created: Mapped[datetime] = mapped_column(UtcTime)
+
+
 class PatientRow(Base):
     """A person under a random code. No name, no free text: nothing here identifies anybody."""
 
     __tablename__ = "patient"
 
     code: Mapped[str] = mapped_column(String(16), primary_key=True)
+    clinic_id: Mapped[str] = mapped_column(ForeignKey("clinic.id"), index=True)
+    deleted: Mapped[datetime | None] = mapped_column(UtcTime)
     year_of_birth: Mapped[int | None] = mapped_column(Integer)
     sex: Mapped[str | None] = mapped_column(String(16))
     population: Mapped[str | None] = mapped_column(String(32))
@@ -45,6 +58,8 @@ class SessionRow(Base):
     __tablename__ = "session"
 
     id: Mapped[str] = mapped_column(String(64), primary_key=True)
+    clinic_id: Mapped[str] = mapped_column(ForeignKey("clinic.id"), index=True)
+    deleted: Mapped[datetime | None] = mapped_column(UtcTime)
     patient_code: Mapped[str | None] = mapped_column(ForeignKey("patient.code"), index=True)
     title: Mapped[str] = mapped_column(String(200))
     protocol: Mapped[str] = mapped_column(String(100))

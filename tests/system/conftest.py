@@ -63,14 +63,16 @@ def floor(tmp_path_factory: pytest.TempPathFactory) -> Iterator[pages.Site]:
 
 
 @pytest.fixture
-def site(floor: pages.Site) -> Iterator[pages.Site]:
-    """A running floor without sessions; those a test leaves behind would slow down the next."""
-    yield floor
-    pages.end_all(floor.url)
-
-
-@pytest.fixture
 def page() -> Iterator[Chrome]:
     """A browser."""
     with browsers.open_browser() as page:
         yield page
+
+
+@pytest.fixture
+def site(floor: pages.Site, page: Chrome) -> Iterator[pages.Site]:
+    """A running floor without sessions, to which the browser has been admitted; those a test leaves behind would slow
+    down the next."""
+    browsers.admit(page, floor.door)
+    yield floor
+    pages.end_all(floor.door)

@@ -1,12 +1,9 @@
 """What browser tests share: a running floor, and the hands and eyes of a person at its page."""
 
 import contextlib
-import json
 import os
 import socket
-import time
 import urllib.error
-import urllib.request
 from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass
@@ -21,6 +18,7 @@ from selenium.webdriver.support.ui import Select, WebDriverWait
 
 from services.bus.settings import BusSettings
 from services.cli import browser as browsers
+from services.cli.door import Door
 from services.cli.supervisor import Supervisor
 from services.gateway.settings import DIST
 
@@ -58,6 +56,7 @@ class Site:
 
     url: str
     supervisor: Supervisor
+    door: Door
 
 
 @contextmanager
@@ -74,33 +73,15 @@ def open_site(recordings: Path, services: Sequence[str] = SERVICES) -> Iterator[
     with Supervisor(services, settings, environment=environment) as supervisor:
         supervisor.wait_until_ready(timeout_s=180)
         url = f"http://127.0.0.1:{port}"
-        until_answered(url)
-        yield Site(url, supervisor)
+        yield Site(url, supervisor, Door.of_first_administrator(url, recordings, PATIENCE_S))
 
 
-def until_answered(url: str) -> None:
-    """Wait for the first answer: a service may be on the bus before its port is open."""
-    end = time.monotonic() + PATIENCE_S
-    while True:
-        try:
-            urllib.request.urlopen(f"{url}/v1/patients", timeout=30).close()
-        except urllib.error.URLError:
-            assert time.monotonic() < end, "the gateway does not answer"
-            time.sleep(0.1)
-        else:
-            return
-
-
-def end_all(url: str) -> None:
+def end_all(door: Door) -> None:
     """Stop whatever is still live."""
-    with urllib.request.urlopen(f"{url}/v1/sessions?state=live", timeout=30) as answer:
-        living = json.load(answer)["items"]
-    for session in living:
+    for session in door.ask("sessions?state=live")["items"]:
         # It may end by itself in between.
         with contextlib.suppress(urllib.error.HTTPError):
-            urllib.request.urlopen(
-                urllib.request.Request(f"{url}/v1/sessions/{session['id']}/stop", b""), timeout=30
-            ).close()
+            door.ask(f"sessions/{session['id']}/stop", {})
 
 
 def free_port() -> int:
@@ -163,12 +144,9 @@ def colours(page: Chrome, selector: str) -> int:
     return int(page.execute_async_script(COLOURS, picture))
 
 
-def begin(url: str, source: str, speed: float | None = 1.0) -> str:
+def begin(door: Door, source: str, speed: float | None = 1.0) -> str:
     """A session asked for by REST; its id."""
-    body = json.dumps({"source": source, "speed": speed}).encode()
-    request = urllib.request.Request(f"{url}/v1/sessions", body, {"Content-Type": "application/json"})
-    with urllib.request.urlopen(request, timeout=30) as answer:
-        return str(json.load(answer)["id"])
+    return str(door.ask("sessions", {"source": source, "speed": speed})["id"])
 
 
 def shown(page: Chrome, selector: str) -> list[str]:

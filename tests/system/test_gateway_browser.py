@@ -69,6 +69,7 @@ def test_a_lost_gateway_greys_the_numbers_and_comes_back_by_itself(site, page):
 
 def test_with_reduced_motion_the_body_is_drawn_on_paper(site):
     with browsers.open_browser(1366, 768, "--force-prefers-reduced-motion") as page:
+        browsers.admit(page, site.door)
         start(page, site.url, "Walk, slow", speed=QUICK)
         wait(page, lambda: text(page, ".session-head .chip") == "Live", "the session is live")
         lines = wait(page, lambda: page.find_elements(By.CSS_SELECTOR, ".stage svg line"), "the figure is drawn")
@@ -89,7 +90,7 @@ def test_the_page_of_the_api_works_without_the_internet(site, page):
 
 def test_the_operator_marks_standing_and_is_told_when_it_was_none(site, page):
     """The walker stands for long, is marked, walks off, and is marked again while it walks."""
-    session = begin(site.url, "synthetic:walk?standing=25&duration=120&seed=5")
+    session = begin(site.door, "synthetic:walk?standing=25&duration=120&seed=5")
     page.get(f"{site.url}/#/sessions/{session}")
     wait(page, lambda: "walk a few steps" in text(page, ".session-head .chip").lower(), "standing is found")
     time.sleep(3.0)
@@ -113,6 +114,7 @@ def notice(page: Chrome, start: str) -> str:
 
 def test_one_knee_is_one_leg_with_its_angle_and_a_report_of_its_own(site):
     with browsers.open_browser() as page:
+        browsers.admit(page, site.door)
         # In real time it is still live after all that is looked at here, however slowly the browser draws.
         pages.start(page, site.url, KNEE)
         wait(page, lambda: live(page), "the session is live")
@@ -147,6 +149,7 @@ def test_one_knee_is_one_leg_with_its_angle_and_a_report_of_its_own(site):
 
 def test_with_reduced_motion_the_leg_is_drawn_on_paper_and_the_task_can_be_chosen(site):
     with browsers.open_browser(1366, 768, "--force-prefers-reduced-motion") as page:
+        browsers.admit(page, site.door)
         page.get(site.url)
         pages.choose_source(page, KNEE)
         assert [
@@ -172,8 +175,8 @@ def test_with_reduced_motion_the_leg_is_drawn_on_paper_and_the_task_can_be_chose
 
 
 def test_a_timed_test_is_reported_by_its_parts_and_an_exercise_by_its_repetitions(site, page):
-    timed = begin(site.url, "synthetic:tug?worn=2&seed=4&pause=3", speed=None)
-    exercise = begin(site.url, "synthetic:knee?duration=30&seed=2", speed=None)
+    timed = begin(site.door, "synthetic:tug?worn=2&seed=4&pause=3", speed=None)
+    exercise = begin(site.door, "synthetic:knee?duration=30&seed=2", speed=None)
     page.get(f"{site.url}/#/sessions/{timed}")
     wait(page, lambda: text(page, ".session-head .chip") == "Finished", "the timed test ends")
     read(page, MEASURED)
@@ -197,7 +200,7 @@ def test_a_timed_test_is_reported_by_its_parts_and_an_exercise_by_its_repetition
 
 
 def test_swapped_sensors_are_named_live_and_in_the_report(site, page):
-    swapped = begin(site.url, "synthetic:walk?worn=1&misworn=1&duration=40&seed=4", speed=4.0)
+    swapped = begin(site.door, "synthetic:walk?worn=1&misworn=1&duration=40&seed=4", speed=4.0)
     page.get(f"{site.url}/#/sessions/{swapped}")
     wait(page, lambda: "swapped" in text(page, ".session-head .chip"), "the chip names the swap")
     assert shown(page, "output.knee-now") in ([], ["–"])

@@ -12,6 +12,7 @@ from services.bus.publisher import LivePublisher, StreamPublisher
 from services.bus.received import Received
 from services.bus.router import open_router
 from services.flow.message import Envelope, Message, Stream
+from services.gateway.access.scope import EVERYTHING
 from services.gateway.bus_control import BusControl
 from services.gateway.bus_feed import BusFeed, BusLink
 from services.gateway.control import ControlRefused, ControlUnavailable, StartRequest
@@ -41,7 +42,7 @@ class Listening:
         self.database.close()
 
     def row(self, session: str):
-        with self.database.transaction() as database:
+        with self.database.transaction(EVERYTHING) as database:
             return database.get(records.SessionRow, session)
 
 

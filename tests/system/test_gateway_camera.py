@@ -20,7 +20,7 @@ SQUATS = "synthetic:squat?person=2&noise=0.3&repetitions=200"
 
 
 def test_squats_before_a_camera_are_seen_counted_and_reported_on_both_sides(site, page):
-    session = begin(site.url, SQUATS)
+    session = begin(site.door, SQUATS)
     page.get(f"{site.url}/#/sessions/{session}")
     wait(page, lambda: live(page), "the session is live")
     wait(page, lambda: shown(page, ".camera-chips .chip") == ["Good"], "the camera's state is told")
@@ -52,6 +52,7 @@ def test_squats_before_a_camera_are_seen_counted_and_reported_on_both_sides(site
 
 def test_who_walks_out_of_the_camera_s_view_is_not_drawn_on_paper_either(site):
     with browsers.open_browser(1366, 768, "--force-prefers-reduced-motion") as page:
+        browsers.admit(page, site.door)
         page.get(site.url)
         pages.choose_source(page, "Leaning forward, camera")
         assert [
@@ -61,7 +62,7 @@ def test_who_walks_out_of_the_camera_s_view_is_not_drawn_on_paper_either(site):
         assert "Squat" in tasks
         assert "Timed up and go" not in tasks
         assert not page.find_element(By.ID, "walk-path").is_displayed()
-        away = begin(site.url, "synthetic:tilt_forward?person=2&noise=0.3&repetitions=200&away_at=30&away_for=600")
+        away = begin(site.door, "synthetic:tilt_forward?person=2&noise=0.3&repetitions=200&away_at=30&away_for=600")
         page.get(f"{site.url}/#/sessions/{away}")
         wait(page, lambda: live(page), "the session is live")
         head = ".stage svg circle"

@@ -1,6 +1,5 @@
 """A therapist looks back: a patient's visits, whether the change is real, the report in both languages, its PDF."""
 
-import urllib.request
 from collections.abc import Iterator
 
 import pytest
@@ -9,6 +8,7 @@ from selenium.webdriver.common.by import By
 from selenium.webdriver.common.keys import Keys
 
 from services.cli import browser as browsers
+from services.cli.door import Door
 from tests.system import pages
 from tests.system.pages import keep, read, shown, text, wait
 from tests.system.visits import seed_visits
@@ -20,18 +20,20 @@ AIDS = ["cane", "rollator", "cane"]
 
 
 @pytest.fixture(scope="module")
-def clinic(tmp_path_factory: pytest.TempPathFactory) -> Iterator[tuple[str, str]]:
-    """Address of a gateway alone, and the code of a patient who came three times."""
+def clinic(tmp_path_factory: pytest.TempPathFactory) -> Iterator[tuple[Door, str]]:
+    """The door of a gateway alone, and the code of a patient who came three times."""
     data = tmp_path_factory.mktemp("visits")
     code, _ = seed_visits(data, SPEEDS, AIDS)
     with pages.open_site(data, ["gateway"]) as site:
-        yield site.url, code
+        yield site.door, code
 
 
 def test_a_patient_s_visits_give_a_verdict_with_its_rule_and_a_report_in_two_languages(
-    clinic: tuple[str, str], page: Chrome
+    clinic: tuple[Door, str], page: Chrome
 ) -> None:
-    url, code = clinic
+    door, code = clinic
+    url = door.url
+    browsers.admit(page, door)
     page.get(f"{url}/#/patients")
     wait(page, lambda: page.find_elements(By.LINK_TEXT, code), "the patient is listed")
     page.find_element(By.LINK_TEXT, code).click()
@@ -51,12 +53,12 @@ def test_a_patient_s_visits_give_a_verdict_with_its_rule_and_a_report_in_two_lan
     page.find_elements(By.LINK_TEXT, "Report")[0].click()
     wait(page, lambda: "0.74 m/s" in text(page, ".sheet[lang=en]"), "the report in English")
     keep(page, "report-english")
-    assert begins(page) == b"%PDF"
+    assert begins(page, door) == b"%PDF"
 
     # The languages are one row of choices for the keyboard, too.
     page.find_element(By.CSS_SELECTOR, "input[name=report-language]:checked").send_keys(Keys.ARROW_RIGHT)
     wait(page, lambda: "0,74 m/s" in text(page, ".sheet[lang=fr]"), "the report in French")
-    assert begins(page) == b"%PDF"
+    assert begins(page, door) == b"%PDF"
     read(page, "Pour les spécialistes")
     limits = ".sheet[lang=fr] section[data-section=limits]"
     wait(page, lambda: text(page, limits) != "", "what the report can not tell")
@@ -69,9 +71,8 @@ def test_a_patient_s_visits_give_a_verdict_with_its_rule_and_a_report_in_two_lan
     assert browsers.hosts_asked(page) == {url.removeprefix("http://")}
 
 
-def begins(page: Chrome) -> bytes:
+def begins(page: Chrome, door: Door) -> bytes:
     """The first bytes of the report's PDF, asked for at the address that the page offers."""
     address = page.find_element(By.CSS_SELECTOR, ".report-bar a[download]").get_attribute("href")
     assert address is not None
-    with urllib.request.urlopen(address, timeout=pages.PATIENCE_S) as answer:
-        return bytes(answer.read(4))
+    return door.read(address.removeprefix(f"{door.url}/v1/"))[:4]

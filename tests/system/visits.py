@@ -11,6 +11,7 @@ from schemas.metrics import MeanCurve, Metric, SessionMetrics, SideComparison, T
 from schemas.population import Population, Sex
 from schemas.session import Anthropometry, HubDescription, Placement, SensorDescription, SessionDescription
 from schemas.vocabulary import Segment, Side, Task
+from services.gateway.access.scope import EVERYTHING, Scope
 from services.gateway.database import Database, open_database
 from services.gateway.patients.models import PatientIn
 from services.gateway.patients.records import add_patient
@@ -41,7 +42,7 @@ def seed_visits(data: Path, speeds: Sequence[float], aids: Sequence[str]) -> tup
         person = PatientIn(
             year_of_birth=1957, sex=Sex.FEMALE, population=Population.STROKE_CHRONIC, paretic_side=Side.LEFT
         )
-        with database.transaction() as records:
+        with database.transaction(Scope("main")) as records:
             code = add_patient(records, person).code
         sessions = [
             _seed_walk(database, code, place, speed, SAID.model_copy(update={"aid": WalkingAid(aid)}))
@@ -55,8 +56,8 @@ def seed_visits(data: Path, speeds: Sequence[float], aids: Sequence[str]) -> tup
 def _seed_walk(database: Database, code: str, place: int, speed: float, conditions: Conditions) -> str:
     began = FIRST_DAY + timedelta(days=DAYS_BETWEEN * place)
     session = f"walk{place + 1}"
-    with database.transaction() as records:
-        row = record_start(records, _description(session, began, conditions))
+    with database.transaction(EVERYTHING) as records:
+        row = record_start(records, _description(session, began, conditions), "main")
         row.patient_code = code
         records.flush()
         record_metrics(records, session, _metrics(speed))

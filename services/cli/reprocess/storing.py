@@ -18,6 +18,7 @@ from services.archive.seal import seal
 from services.archive.writer import SessionWriter
 from services.cli.reprocess.recompute import CannotRecompute
 from services.flow.software import SOFTWARE, VERSION
+from services.gateway.access.scope import EVERYTHING
 from services.gateway.database import Database, open_database
 from services.gateway.settings import GatewaySettings
 from services.gateway.versions.records import replace_metrics
@@ -113,5 +114,5 @@ class Index:
 
     def replace(self, description: SessionDescription, metrics: SessionMetrics) -> bool:
         """Put a result in place of the current one, which is kept. False when the session is not known there."""
-        with self._database.transaction() as transaction:
+        with self._database.transaction(EVERYTHING) as transaction:
             return replace_metrics(transaction, description.session, metrics, description)

@@ -34,7 +34,7 @@ class Recorded(NamedTuple):
 
 def recorded(gateway: Gateway, session: str) -> Recorded:
     """Raises a 404 problem for a session that is not known."""
-    with gateway.database.transaction() as database:
+    with gateway.transaction() as database:
         row = get_session(database, session)
         runs = row.state in (SessionState.CREATED, SessionState.LIVE)
         estimator = row.estimator

@@ -9,6 +9,7 @@ from fastapi.responses import StreamingResponse
 
 from services.exports.formats import FORMATS, Options, file_name, why_not
 from services.exports.opensim.models import known_model
+from services.gateway.access.rules import READ
 from services.gateway.context import Context, SessionId
 from services.gateway.exports.models import ExportOut, ExportsOut
 from services.gateway.exports.recording import Recorded, recorded
@@ -23,7 +24,7 @@ ModelName = Annotated[
 ]
 
 
-@router.get("", responses=documented(HTTPStatus.NOT_FOUND))
+@router.get("", dependencies=READ, responses=documented(HTTPStatus.NOT_FOUND))
 def list_exports(session: SessionId, gateway: Context) -> ExportsOut:
     """Every format, and why one cannot be had."""
     of = recorded(gateway, session)
@@ -43,6 +44,7 @@ def list_exports(session: SessionId, gateway: Context) -> ExportsOut:
 
 @router.get(
     "/{name}",
+    dependencies=READ,
     response_class=StreamingResponse,
     responses={
         200: {"content": {"application/octet-stream": {}}, "description": "The file"},

@@ -22,7 +22,7 @@ def fhir_source(gateway: Gateway, session: str, site: str, language: Language | 
     A session that still runs has no PDF. Raises a 404 problem for an unknown session, a 409 problem for one without
     metrics.
     """
-    with gateway.database.transaction() as database:
+    with gateway.transaction() as database:
         row = get_session(database, session)
         metrics = stored_metrics(row)
         if metrics is None or row.description is None:

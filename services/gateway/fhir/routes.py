@@ -9,6 +9,7 @@ from fastapi.responses import Response
 
 from services.exports.fhir.bundle import MEDIA_TYPE, bundle
 from services.exports.fhir.code_systems import CODE_SYSTEMS
+from services.gateway.access.rules import KNOWN, READ
 from services.gateway.context import Context, SessionId
 from services.gateway.fhir.gather import fhir_source
 from services.gateway.problems import Problem, documented
@@ -23,6 +24,7 @@ _FHIR: dict[int | str, dict[str, Any]] = {
 
 @router.get(
     "/sessions/{session}/fhir",
+    dependencies=READ,
     response_class=Response,
     responses={**_FHIR, **documented(HTTPStatus.NOT_FOUND, HTTPStatus.CONFLICT)},
 )
@@ -43,6 +45,7 @@ def read_bundle(
 
 @router.get(
     "/fhir/CodeSystem/{name}",
+    dependencies=KNOWN,
     response_class=Response,
     responses={**_FHIR, **documented(HTTPStatus.NOT_FOUND)},
 )

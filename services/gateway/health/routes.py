@@ -3,6 +3,7 @@
 from fastapi import APIRouter
 
 from schemas.health import Health
+from services.gateway.access.rules import KNOWN
 from services.gateway.context import Context
 from services.gateway.health.models import HealthOut, ServiceHealth
 from services.gateway.problems import documented
@@ -10,7 +11,7 @@ from services.gateway.problems import documented
 router = APIRouter(prefix="/v1/health", tags=["health"])
 
 
-@router.get("", responses=documented())
+@router.get("", dependencies=KNOWN, responses=documented())
 def read_health(gateway: Context) -> HealthOut:
     """The latest report of every service, and which needed ones are silent. Always answers."""
     board = gateway.live.health

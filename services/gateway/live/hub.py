@@ -11,10 +11,11 @@ from dataclasses import dataclass, field
 
 from schemas.kinematics import LivePose
 from schemas.session import SessionDescription
+from services.gateway.access.scope import Scope
 from services.gateway.health.board import HealthBoard
 from services.gateway.live import views
 from services.gateway.live.memory import Memory
-from services.gateway.live.viewer import GOING_AWAY, NORMAL, Viewer
+from services.gateway.live.viewer import GOING_AWAY, NORMAL, POLICY, Viewer
 from services.gateway.live.views import View
 from services.gateway.parameters import GatewayParameters
 
@@ -43,10 +44,11 @@ class ArrivedPose:
 
 @dataclass(eq=False)
 class LiveSession:
-    """One running session and who watches it."""
+    """One running session and who watches it. Until its clinic is known nobody but the site itself sees it."""
 
     description: SessionDescription
     patient: str | None = None
+    clinic: str | None = None
     memory: Memory = field(default_factory=Memory)
     viewers: set[Viewer] = field(default_factory=set)
     task: asyncio.Task[None] | None = None
@@ -80,9 +82,9 @@ class LiveHub:
         """A session runs. Known ones are left as they are."""
         self._on_loop(lambda: self._open(description))
 
-    def assign(self, session: str, patient: str | None) -> None:
-        """The session belongs to this patient."""
-        self._on_loop(lambda: self._assign(session, patient))
+    def assign(self, session: str, patient: str | None, clinic: str) -> None:
+        """The session belongs to this patient and this clinic."""
+        self._on_loop(lambda: self._assign(session, patient, clinic))
 
     def tell(self, session: str, view: View) -> None:
         """An event of a session, for everybody who watches it. Remembers what a late viewer must know."""
@@ -110,12 +112,12 @@ class LiveHub:
         await asyncio.gather(*filter(None, tasks), return_exceptions=True)
 
     @contextlib.contextmanager
-    def watch(self, session: str) -> Iterator[Viewer]:
-        """Watch one session. Raises NotLive or TooManyViewers."""
+    def watch(self, session: str, scope: Scope) -> Iterator[Viewer]:
+        """Watch one session. Raises TooManyViewers, or NotLive, also when it is not the viewer's to see."""
         live = self._sessions.get(session)
-        if live is None:
+        if live is None or not scope.sees(live.clinic, live.patient):
             raise NotLive(session)
-        viewer = self._new_viewer()
+        viewer = self._new_viewer(scope)
         live.viewers.add(viewer)
         for view in (views.session_view(live.description, live.patient), *live.memory):
             viewer.tell(views.encode(view))
@@ -130,11 +132,11 @@ class LiveHub:
                 live.task = None
 
     @contextlib.contextmanager
-    def watch_floor(self) -> Iterator[Viewer]:
+    def watch_floor(self, scope: Scope) -> Iterator[Viewer]:
         """Watch the list of running sessions. Raises TooManyViewers."""
-        viewer = self._new_viewer()
+        viewer = self._new_viewer(scope)
         self._floor_viewers.add(viewer)
-        viewer.show("floor", views.encode(self._floor_view()))
+        self._show_cards({viewer})
         if self._floor_task is None:
             self._floor_task = asyncio.get_running_loop().create_task(self._show_floor())
         try:
@@ -149,11 +151,11 @@ class LiveHub:
         """Whether the session runs now."""
         return session in self._sessions
 
-    def _new_viewer(self) -> Viewer:
+    def _new_viewer(self, scope: Scope) -> Viewer:
         open_now = len(self._floor_viewers) + sum(len(live.viewers) for live in self._sessions.values())
         if open_now >= self.parameters.most_viewers:
             raise TooManyViewers
-        return Viewer(self.parameters.event_queue)
+        return Viewer(self.parameters.event_queue, scope)
 
     def _on_loop(self, call: Callable[[], None]) -> None:
         if self._loop is None:
@@ -166,9 +168,14 @@ class LiveHub:
         self._sessions.setdefault(description.session, LiveSession(description))
         self._poses.setdefault(description.session, deque(maxlen=self.parameters.trail))
 
-    def _assign(self, session: str, patient: str | None) -> None:
+    def _assign(self, session: str, patient: str | None, clinic: str) -> None:
         live = self._sessions.get(session)
-        if live is not None and live.patient != patient:
+        if live is None:
+            return
+        live.clinic = clinic
+        for viewer in [each for each in live.viewers if not each.scope.sees(clinic, patient)]:
+            viewer.end(POLICY, "this session is not yours to see any more")
+        if live.patient != patient:
             live.patient = patient
             self._tell(session, {"kind": "patient", "patient": patient})
 
@@ -208,7 +215,7 @@ class LiveHub:
     async def _show_floor(self) -> None:
         while True:
             await asyncio.sleep(self.parameters.floor_interval_s)
-            self._show(self._floor_viewers, "floor", self._floor_view())
+            self._show_cards(self._floor_viewers)
 
     def _show(self, viewers: set[Viewer], slot: str, view: View | None) -> None:
         if view is not None and viewers:
@@ -239,9 +246,14 @@ class LiveHub:
     def _status_view(self, session: str) -> View:
         return {"kind": "status", "age_s": self._age_s(session), **self.health.brief()}
 
-    def _floor_view(self) -> View:
-        cards = [self._card_view(session, live) for session, live in self._sessions.items()]
-        return {"kind": "floor", "sessions": cards, **self.health.brief()}
+    def _show_cards(self, viewers: set[Viewer]) -> None:
+        """Each card is made once, and each list once for all who may see the same."""
+        cards = [(live, self._card_view(session, live)) for session, live in self._sessions.items()]
+        brief = self.health.brief()
+        for scope in {viewer.scope for viewer in viewers}:
+            seen = [card for live, card in cards if scope.sees(live.clinic, live.patient)]
+            alike = {viewer for viewer in viewers if viewer.scope == scope}
+            self._show(alike, "floor", {"kind": "floor", "sessions": seen, **brief})
 
     def _card_view(self, session: str, live: LiveSession) -> View:
         newest = self._newest(session)

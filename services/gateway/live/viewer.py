@@ -3,8 +3,11 @@
 import asyncio
 from collections import deque
 
-NORMAL, GOING_AWAY, TRY_AGAIN = 1000, 1001, 1013
-"""Close codes: the session is over; the gateway stops; too slow, so read by REST and come again."""
+from services.gateway.access.scope import Scope
+
+NORMAL, GOING_AWAY, POLICY, TRY_AGAIN, SIGN_IN = 1000, 1001, 1008, 1013, 4401
+"""Close codes: the session is over; the gateway stops; not yours; too slow, so read by REST and come again; the sign-in
+has ended."""
 
 
 class Ended(Exception):
@@ -19,7 +22,8 @@ class Ended(Exception):
 class Viewer:
     """Lives on the event loop. Never waits for its browser, so a slow one harms nobody but itself."""
 
-    def __init__(self, event_queue: int) -> None:
+    def __init__(self, event_queue: int, scope: Scope) -> None:
+        self.scope = scope
         self._event_queue = event_queue
         self._events: deque[str] = deque()
         self._newest: dict[str, str] = {}

@@ -2,6 +2,8 @@
 
 from alembic import context
 
+import services.gateway.access.tables
+import services.gateway.audit.tables  # noqa: F401 - they add their tables to Base
 from services.gateway.tables import Base
 
 context.configure(

@@ -5,6 +5,7 @@ from http import HTTPStatus
 from fastapi import APIRouter
 from sqlalchemy.orm import Session
 
+from services.gateway.access.rules import READ, WORK
 from services.gateway.context import Context, Limit, Offset, PatientCode
 from services.gateway.patients import records
 from services.gateway.patients.models import PatientChange, PatientIn, PatientOut, PatientPage
@@ -14,32 +15,32 @@ from services.gateway.tables import PatientRow
 router = APIRouter(prefix="/v1/patients", tags=["patients"])
 
 
-@router.post("", status_code=HTTPStatus.CREATED, responses=documented())
+@router.post("", dependencies=WORK, status_code=HTTPStatus.CREATED, responses=documented())
 def create_patient(body: PatientIn, gateway: Context) -> PatientOut:
     """Register a patient; the answer has the random code to write on the chart."""
-    with gateway.database.transaction() as database:
+    with gateway.transaction() as database:
         return _shape(database, [records.add_patient(database, body)])[0]
 
 
-@router.get("", responses=documented())
+@router.get("", dependencies=READ, responses=documented())
 def list_patients(gateway: Context, offset: Offset = 0, limit: Limit = 50) -> PatientPage:
     """List the patients, newest first."""
-    with gateway.database.transaction() as database:
+    with gateway.transaction() as database:
         total, rows = records.list_patients(database, offset, limit)
         return PatientPage(total=total, items=_shape(database, rows))
 
 
-@router.get("/{code}", responses=documented(HTTPStatus.NOT_FOUND))
+@router.get("/{code}", dependencies=READ, responses=documented(HTTPStatus.NOT_FOUND))
 def read_patient(code: PatientCode, gateway: Context) -> PatientOut:
     """One patient."""
-    with gateway.database.transaction() as database:
+    with gateway.transaction() as database:
         return _shape(database, [records.get_patient(database, code)])[0]
 
 
-@router.patch("/{code}", responses=documented(HTTPStatus.NOT_FOUND))
+@router.patch("/{code}", dependencies=WORK, responses=documented(HTTPStatus.NOT_FOUND))
 def change_patient(code: PatientCode, body: PatientChange, gateway: Context) -> PatientOut:
     """Correct what is known of the patient. Fields that are left out stay; null takes one out."""
-    with gateway.database.transaction() as database:
+    with gateway.transaction() as database:
         row = records.get_patient(database, code)
         for name, value in body.model_dump(exclude_unset=True).items():
             setattr(row, name, value)

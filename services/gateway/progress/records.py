@@ -1,6 +1,7 @@
 """A patient's baseline in the database, frozen when it is first needed."""
 
 from collections.abc import Callable, Mapping
+from contextlib import AbstractContextManager
 from datetime import UTC, datetime
 from typing import TypeVar
 
@@ -8,7 +9,6 @@ from sqlalchemy.exc import IntegrityError
 from sqlalchemy.orm import Session
 
 from schemas.population import Population
-from services.gateway.database import Database
 from services.gateway.tables import BaselineRow, PatientRow
 from services.progress.baseline import Baseline, complete, freeze
 from services.progress.visits import Visit, numbers_of_sessions
@@ -16,14 +16,14 @@ from services.progress.visits import Visit, numbers_of_sessions
 T = TypeVar("T")
 
 
-def settled(database: Database, work: Callable[[Session], T]) -> T:
+def settled(transaction: Callable[[], AbstractContextManager[Session]], work: Callable[[Session], T]) -> T:
     """What `work` gives in a transaction. Where another request froze the same baseline meanwhile, it is done again
     and finds that one."""
     try:
-        with database.transaction() as session:
+        with transaction() as session:
             return work(session)
     except IntegrityError:
-        with database.transaction() as session:
+        with transaction() as session:
             return work(session)
 
 

@@ -9,6 +9,7 @@ from sqlalchemy.orm import Session
 
 from schemas.population import Population
 from schemas.vocabulary import Side, Task
+from services.gateway.access.rules import READ, WORK
 from services.gateway.context import Context, Gateway, PatientCode
 from services.gateway.patients.records import get_patient
 from services.gateway.problems import Problem, documented
@@ -27,7 +28,7 @@ Measure = Annotated[str, StringConstraints(pattern="^[a-z0-9_]{1,64}$")]
 NEEDS = "A usable visit has final metrics, and says aid, orthosis, footwear and how fast the person was asked to walk."
 
 
-@router.get("/{code}/progress", responses=documented(HTTPStatus.NOT_FOUND))
+@router.get("/{code}/progress", dependencies=READ, responses=documented(HTTPStatus.NOT_FOUND))
 def read_progress(
     code: PatientCode,
     gateway: Context,
@@ -41,7 +42,7 @@ def read_progress(
     The first usable visit becomes the baseline when none was chosen; its thresholds are frozen then.
     """
     _, found = records.settled(
-        gateway.database, lambda database: patient_progress(database, gateway, code, task, measure)
+        gateway.transaction, lambda database: patient_progress(database, gateway, code, task, measure)
     )
     return shapes.progress_out(code, found)
 
@@ -60,7 +61,7 @@ def patient_progress(
     return visits, progress(visits, baseline, _person(patient, uses), task, measures)
 
 
-@router.get("/{code}/baseline", responses=documented(HTTPStatus.NOT_FOUND))
+@router.get("/{code}/baseline", dependencies=READ, responses=documented(HTTPStatus.NOT_FOUND))
 def read_baseline(code: PatientCode, gateway: Context) -> BaselineOut:
     """What progress counts from. The first usable visit, when none was chosen."""
 
@@ -71,13 +72,13 @@ def read_baseline(code: PatientCode, gateway: Context) -> BaselineOut:
             raise Problem(HTTPStatus.NOT_FOUND, f"Patient {code} has no usable visit yet.", NEEDS)
         return _shape(database, code, baseline, visits)
 
-    return records.settled(gateway.database, read)
+    return records.settled(gateway.transaction, read)
 
 
-@router.put("/{code}/baseline", responses=documented(HTTPStatus.NOT_FOUND, HTTPStatus.CONFLICT))
+@router.put("/{code}/baseline", dependencies=WORK, responses=documented(HTTPStatus.NOT_FOUND, HTTPStatus.CONFLICT))
 def choose_baseline(code: PatientCode, body: BaselineIn, gateway: Context) -> BaselineOut:
     """Let progress count from the visit of a session; speed band and thresholds are chosen anew and frozen."""
-    with gateway.database.transaction() as database:
+    with gateway.transaction() as database:
         patient, visits = _known(database, code)
         if body.session not in numbers_of_sessions(visits):
             detail = f"Session {body.session} is none of patient {code}."
@@ -89,10 +90,12 @@ def choose_baseline(code: PatientCode, body: BaselineIn, gateway: Context) -> Ba
         return _shape(database, code, baseline, visits)
 
 
-@router.delete("/{code}/baseline", status_code=HTTPStatus.NO_CONTENT, responses=documented(HTTPStatus.NOT_FOUND))
+@router.delete(
+    "/{code}/baseline", dependencies=WORK, status_code=HTTPStatus.NO_CONTENT, responses=documented(HTTPStatus.NOT_FOUND)
+)
 def forget_baseline(code: PatientCode, gateway: Context) -> None:
     """Forget the baseline; the first usable visit takes its place, with the thresholds that fit then."""
-    with gateway.database.transaction() as database:
+    with gateway.transaction() as database:
         get_patient(database, code)
         if not records.delete_baseline(database, code):
             raise Problem(HTTPStatus.NOT_FOUND, f"Patient {code} has no baseline.", "There is nothing to forget.")

@@ -7,6 +7,7 @@ from fastapi import APIRouter, Path
 from fastapi.responses import FileResponse
 from pydantic import BaseModel, ConfigDict, Field
 
+from services.gateway.access.rules import READ
 from services.gateway.context import Context, Gateway, SessionId
 from services.gateway.problems import Problem, documented
 from services.gateway.recordings.folder import Recording, list_recordings
@@ -30,7 +31,7 @@ class RecordingOut(BaseModel):
     sha256: str | None = Field(description="hexadecimal; null until it is complete")
 
 
-@router.get("", responses=documented(HTTPStatus.NOT_FOUND))
+@router.get("", dependencies=READ, responses=documented(HTTPStatus.NOT_FOUND))
 def list_files(session: SessionId, gateway: Context) -> list[RecordingOut]:
     """The MCAP files of a session; any MCAP reader opens them."""
     return [
@@ -47,6 +48,7 @@ def list_files(session: SessionId, gateway: Context) -> list[RecordingOut]:
 
 @router.get(
     "/{name}",
+    dependencies=READ,
     response_class=FileResponse,
     responses={200: {"content": {MEDIA_TYPE: {}}, "description": "The file"}, **documented(HTTPStatus.NOT_FOUND)},
 )
@@ -63,6 +65,6 @@ def download_file(session: SessionId, name: FileName, gateway: Context) -> FileR
 
 
 def _recordings(gateway: Gateway, session: str) -> list[Recording]:
-    with gateway.database.transaction() as database:
+    with gateway.transaction() as database:
         get_session(database, session)
     return list_recordings(gateway.settings.data_dir, session)

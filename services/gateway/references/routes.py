@@ -5,6 +5,7 @@ from http import HTTPStatus
 from fastapi import APIRouter
 
 from schemas.population import Sex
+from services.gateway.access.rules import KNOWN, READ
 from services.gateway.context import Context, Limit, Offset, SessionId
 from services.gateway.problems import Problem, documented
 from services.gateway.references import shapes
@@ -18,7 +19,7 @@ from services.reference.bands import Person
 router = APIRouter(prefix="/v1", tags=["references"])
 
 
-@router.get("/references", responses=documented())
+@router.get("/references", dependencies=KNOWN, responses=documented())
 def list_references(gateway: Context, offset: Offset = 0, limit: Limit = 50) -> ReferencePage:
     """List the reference sets: the clinic's own, then those that come with the software; and what was refused."""
     shelf = shelf_of(gateway)
@@ -29,10 +30,10 @@ def list_references(gateway: Context, offset: Offset = 0, limit: Limit = 50) -> 
     )
 
 
-@router.get("/sessions/{session}/references", responses=documented(HTTPStatus.NOT_FOUND))
+@router.get("/sessions/{session}/references", dependencies=READ, responses=documented(HTTPStatus.NOT_FOUND))
 def read_session_references(session: SessionId, gateway: Context) -> SessionReferencesOut:
     """Each metric of a session against the band of people like the patient, or why no band fits."""
-    with gateway.database.transaction() as database:
+    with gateway.transaction() as database:
         row = records.get_session(database, session)
         metrics, shown = stored_metrics(row), session_out(row)
         patient = None if row.patient_code is None else database.get(PatientRow, row.patient_code)

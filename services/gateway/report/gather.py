@@ -34,7 +34,7 @@ from services.report.source import Patient, Progress, ReportSource, Treatment
 def report_source(gateway: Gateway, session: str, *, with_strides: bool = False) -> ReportSource:
     """Raises a 404 problem for an unknown session or recording, a 409 problem for one without final metrics."""
     strides = recorded_strides(gateway.settings.data_dir, session) if with_strides else ()
-    with gateway.database.transaction() as database:
+    with gateway.transaction() as database:
         row = get_session(database, session)
         metrics = _final_metrics(row)
         description = _description(row)

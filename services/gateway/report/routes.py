@@ -7,6 +7,7 @@ from typing import Annotated
 from fastapi import APIRouter, Depends, Path, Query
 from fastapi.responses import HTMLResponse, Response
 
+from services.gateway.access.rules import KNOWN, READ
 from services.gateway.context import Context, Gateway, SessionId
 from services.gateway.problems import Problem, documented
 from services.gateway.report.gather import report_source
@@ -38,7 +39,7 @@ Asked = Annotated[Wish, Depends()]
 PROBLEMS = documented(HTTPStatus.NOT_FOUND, HTTPStatus.CONFLICT)
 
 
-@router.get("/sessions/{session}/report", responses=PROBLEMS)
+@router.get("/sessions/{session}/report", dependencies=READ, responses=PROBLEMS)
 def read_report(session: SessionId, gateway: Context, asked: Asked) -> Report:
     """The report of a session as content: sentences, tables, charts as SVG. Progress is told up to its visit."""
     return _report(gateway, session, asked)
@@ -46,6 +47,7 @@ def read_report(session: SessionId, gateway: Context, asked: Asked) -> Report:
 
 @router.get(
     "/sessions/{session}/report.html",
+    dependencies=READ,
     response_class=HTMLResponse,
     responses={200: {"content": {"text/html": {}}, "description": "The page"}, **PROBLEMS},
 )
@@ -56,6 +58,7 @@ def read_report_page(session: SessionId, gateway: Context, asked: Asked) -> HTML
 
 @router.get(
     "/sessions/{session}/report.pdf",
+    dependencies=READ,
     response_class=Response,
     responses={200: {"content": {PDF: {}}, "description": "The PDF"}, **PROBLEMS},
 )
@@ -66,7 +69,7 @@ def read_report_pdf(session: SessionId, gateway: Context, asked: Asked) -> Respo
     return Response(press().pdf(report), media_type=PDF, headers={"Content-Disposition": name})
 
 
-@router.get("/wording/{language}", responses=documented(HTTPStatus.NOT_FOUND))
+@router.get("/wording/{language}", dependencies=KNOWN, responses=documented(HTTPStatus.NOT_FOUND))
 def read_wording(language: LanguageCode) -> dict[str, str]:
     """Every word of the reports by its key: names of metrics, conditions, phases, verdicts, reasons."""
     if language not in list(Language):

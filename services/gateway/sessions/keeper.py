@@ -12,6 +12,7 @@ from schemas.kinematics import Calibration
 from schemas.metrics import SessionMetrics
 from schemas.rhythm import LearnedRhythm
 from schemas.session import SessionDescription
+from services.gateway.access.scope import EVERYTHING
 from services.gateway.database import Database
 from services.gateway.live import views
 from services.gateway.live.hub import LiveHub
@@ -32,6 +33,7 @@ class SessionKeeper:
     database: Database
     live: LiveHub
     parameters: GatewayParameters = field(default_factory=GatewayParameters)
+    clinic: str = "main"
     clock: Callable[[], float] = time.monotonic
     running: set[str] = field(default_factory=set)
     _finished: set[str] = field(default_factory=set)
@@ -41,7 +43,7 @@ class SessionKeeper:
 
     def adopt_open_sessions(self) -> None:
         """After a start: sessions the database believes to run must show up soon, or count as gone."""
-        with self.database.transaction() as database:
+        with self.database.transaction(EVERYTHING) as database:
             for session in records.open_sessions(database):
                 self._gone_since.setdefault(session, self.clock())
 
@@ -96,29 +98,29 @@ class SessionKeeper:
             self.live.close(session, SessionState.INTERRUPTED)
 
     def _record_start(self, description: SessionDescription) -> None:
-        with self.database.transaction() as database:
-            row = records.record_start(database, description)
-            patient = row.patient_code
-        self.live.assign(description.session, patient)
+        with self.database.transaction(EVERYTHING) as database:
+            row = records.record_start(database, description, self.clinic)
+            patient, clinic = row.patient_code, row.clinic_id
+        self.live.assign(description.session, patient, clinic)
 
     def _record_metrics(self, session: str, metrics: SessionMetrics) -> None:
-        with self.database.transaction() as database:
+        with self.database.transaction(EVERYTHING) as database:
             records.record_metrics(database, session, metrics)
 
     def _record_calibration(self, session: str, calibration: Calibration) -> None:
-        with self.database.transaction() as database:
+        with self.database.transaction(EVERYTHING) as database:
             records.record_calibration(database, session, calibration)
 
     def _record_rhythm(self, session: str, rhythm: LearnedRhythm) -> None:
-        with self.database.transaction() as database:
+        with self.database.transaction(EVERYTHING) as database:
             record_rhythm(database, session, rhythm)
 
     def _record_length(self, session: str, length_s: float) -> None:
-        with self.database.transaction() as database:
+        with self.database.transaction(EVERYTHING) as database:
             records.record_length(database, session, length_s)
 
     def _record_end(self, session: str) -> None:
-        with self.database.transaction() as database:
+        with self.database.transaction(EVERYTHING) as database:
             records.record_end(database, session, SessionState.INTERRUPTED, VANISHED)
 
     def _write(self, key: tuple[str, str], write: Callable[[], None]) -> None:

@@ -24,10 +24,11 @@ def new_session_id() -> str:
     return secrets.token_hex(8)
 
 
-def add_requested(database: Session, session: str, wish: SessionIn) -> SessionRow:
-    """Store the wish to start a session, before an ingest is asked."""
+def add_requested(database: Session, session: str, wish: SessionIn, clinic: str) -> SessionRow:
+    """Store the wish to start a session in a clinic, before an ingest is asked."""
     row = SessionRow(
         id=session,
+        clinic_id=clinic,
         patient_code=wish.patient,
         title=wish.source,
         protocol="",
@@ -47,11 +48,13 @@ def add_requested(database: Session, session: str, wish: SessionIn) -> SessionRo
     return row
 
 
-def record_start(database: Session, description: SessionDescription) -> SessionRow:
-    """Store that a session runs. One that nobody asked for becomes an unassigned session."""
+def record_start(database: Session, description: SessionDescription, clinic: str) -> SessionRow:
+    """Store that a session runs. One that nobody asked for becomes an unassigned session of that clinic."""
     row = database.get(SessionRow, description.session)
     if row is None:
-        row = SessionRow(id=description.session, patient_code=None, created=datetime.now(UTC), source=None)
+        row = SessionRow(
+            id=description.session, clinic_id=clinic, patient_code=None, created=datetime.now(UTC), source=None
+        )
         database.add(row)
     row.title = description.title[:200]
     row.protocol = description.protocol[:100]

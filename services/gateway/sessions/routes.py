@@ -10,6 +10,7 @@ from fastapi import APIRouter, Query
 from schemas.metrics import SessionMetrics
 from schemas.session import SessionDescription
 from schemas.vocabulary import Task
+from services.gateway.access.rules import READ, WORK
 from services.gateway.context import Context, Gateway, Limit, Offset, SessionId
 from services.gateway.control import ControlRefused, ControlUnavailable, StartRequest
 from services.gateway.patients.records import get_patient, with_known_side
@@ -39,7 +40,10 @@ CHOOSE_SOURCE = "Choose a source from GET /v1/sources."
 
 
 @router.post(
-    "", status_code=HTTPStatus.CREATED, responses=documented(HTTPStatus.NOT_FOUND, HTTPStatus.SERVICE_UNAVAILABLE)
+    "",
+    dependencies=WORK,
+    status_code=HTTPStatus.CREATED,
+    responses=documented(HTTPStatus.NOT_FOUND, HTTPStatus.SERVICE_UNAVAILABLE),
 )
 def start_session(body: SessionIn, gateway: Context) -> SessionOut:
     """Store a session and ask an ingest to run it. A session that could not start stays listed as failed.
@@ -47,22 +51,25 @@ def start_session(body: SessionIn, gateway: Context) -> SessionOut:
     With a patient, the session knows the rhythms of the patient's previous trial and visit and starts from them.
     """
     session, known, conditions = records.new_session_id(), None, body.conditions
-    with gateway.database.transaction() as database:
+    clinic = gateway.known_caller.clinic
+    with gateway.transaction() as database:
         if body.patient is not None:
-            conditions = with_known_side(body.conditions, get_patient(database, body.patient))
+            patient = get_patient(database, body.patient)
+            clinic = patient.clinic_id
+            conditions = with_known_side(body.conditions, patient)
             known = known_rhythms(database, body.patient, datetime.now(UTC))
-        records.add_requested(database, session, body)
+        records.add_requested(database, session, body, clinic)
     order = StartRequest(
         session, body.source, body.speed, body.estimator, body.walk_path, known, body.task, body.walkway_m, conditions
     )
     description = _ask_for_start(gateway, order)
-    with gateway.database.transaction() as database:
-        row = records.record_start(database, description)
+    with gateway.transaction() as database:
+        row = records.record_start(database, description, clinic)
         database.flush()
         return shapes.session_out(row)
 
 
-@router.get("", responses=documented())
+@router.get("", dependencies=READ, responses=documented())
 def list_sessions(
     gateway: Context,
     state: Annotated[SessionState | None, Query(description="only sessions in this state")] = None,
@@ -75,39 +82,40 @@ def list_sessions(
 ) -> SessionPage:
     """List the sessions, newest first."""
     wanted = records.Wanted(state, patient, task, from_day, to_day)
-    with gateway.database.transaction() as database:
+    with gateway.transaction() as database:
         total, rows = records.list_sessions(database, wanted, offset, limit)
         return SessionPage(total=total, items=[shapes.session_out(row) for row in rows])
 
 
-@router.get("/{session}", responses=documented(HTTPStatus.NOT_FOUND))
+@router.get("/{session}", dependencies=READ, responses=documented(HTTPStatus.NOT_FOUND))
 def read_session(session: SessionId, gateway: Context) -> SessionOut:
     """One session."""
-    with gateway.database.transaction() as database:
+    with gateway.transaction() as database:
         return shapes.session_out(records.get_session(database, session))
 
 
-@router.patch("/{session}", responses=documented(HTTPStatus.NOT_FOUND))
+@router.patch("/{session}", dependencies=WORK, responses=documented(HTTPStatus.NOT_FOUND))
 def link_session(session: SessionId, body: SessionLink, gateway: Context) -> SessionOut:
     """Say to whom a session belongs."""
-    with gateway.database.transaction() as database:
+    with gateway.transaction() as database:
         row = records.get_session(database, session)
         if body.patient is not None:
-            get_patient(database, body.patient)
+            row.clinic_id = get_patient(database, body.patient).clinic_id
         row.patient_code = body.patient
-        answer = shapes.session_out(row)
-    gateway.live.assign(session, body.patient)
+        answer, clinic = shapes.session_out(row), row.clinic_id
+    gateway.live.assign(session, body.patient, clinic)
     return answer
 
 
 @router.post(
     "/{session}/stop",
+    dependencies=WORK,
     status_code=HTTPStatus.ACCEPTED,
     responses=documented(HTTPStatus.NOT_FOUND, HTTPStatus.CONFLICT, HTTPStatus.SERVICE_UNAVAILABLE),
 )
 def stop_session(session: SessionId, gateway: Context) -> SessionOut:
     """End a running session; its final metrics follow within seconds."""
-    with gateway.database.transaction() as database:
+    with gateway.transaction() as database:
         row = records.get_session(database, session)
         answer = shapes.session_out(row)
     if answer.state not in (SessionState.CREATED, SessionState.LIVE):
@@ -125,6 +133,7 @@ def stop_session(session: SessionId, gateway: Context) -> SessionOut:
 
 @router.post(
     "/{session}/marks",
+    dependencies=WORK,
     status_code=HTTPStatus.ACCEPTED,
     responses=documented(HTTPStatus.NOT_FOUND, HTTPStatus.CONFLICT, HTTPStatus.SERVICE_UNAVAILABLE),
 )
@@ -134,7 +143,7 @@ def mark_standing(session: SessionId, body: MarkIn, gateway: Context) -> MarkOut
     Before the first steps it is the standing that counts; later, all angles refer to it from then on. A mark in which
     the person moved or sat is refused: the live stream says why.
     """
-    with gateway.database.transaction() as database:
+    with gateway.transaction() as database:
         records.get_session(database, session)
     try:
         from_s, to_s = gateway.control.mark(session, body.last_s, body.at_s)
@@ -145,32 +154,32 @@ def mark_standing(session: SessionId, body: MarkIn, gateway: Context) -> MarkOut
     return MarkOut(session=session, from_s=from_s, to_s=to_s)
 
 
-@router.get("/{session}/metrics", responses=documented(HTTPStatus.NOT_FOUND))
+@router.get("/{session}/metrics", dependencies=READ, responses=documented(HTTPStatus.NOT_FOUND))
 def read_metrics(session: SessionId, gateway: Context) -> MetricsOut:
     """The session in numbers, final or so far."""
     return shapes.metrics_out(session, _metrics_of(gateway, session))
 
 
-@router.get("/{session}/curves", responses=documented(HTTPStatus.NOT_FOUND))
+@router.get("/{session}/curves", dependencies=READ, responses=documented(HTTPStatus.NOT_FOUND))
 def read_curves(session: SessionId, gateway: Context) -> CurvesOut:
     """Mean curves over the stride with their spread, final or so far."""
     return shapes.curves_out(session, _metrics_of(gateway, session))
 
 
-@router.get("/{session}/phases", responses=documented(HTTPStatus.NOT_FOUND))
+@router.get("/{session}/phases", dependencies=READ, responses=documented(HTTPStatus.NOT_FOUND))
 def read_phases(session: SessionId, gateway: Context) -> PhasesOut:
     """Phases of the session's timed tests, all or so far; the running one has no end. Empty for other tasks."""
     return shapes.phases_out(session, _metrics_of(gateway, session))
 
 
-@router.get("/{session}/repetitions", responses=documented(HTTPStatus.NOT_FOUND))
+@router.get("/{session}/repetitions", dependencies=READ, responses=documented(HTTPStatus.NOT_FOUND))
 def read_repetitions(session: SessionId, gateway: Context) -> RepetitionsOut:
     """Repetitions of an exercise in order, once the session is over. Empty before that, and for other tasks."""
     return shapes.repetitions_out(session, _metrics_of(gateway, session))
 
 
 def _metrics_of(gateway: Gateway, session: str) -> SessionMetrics:
-    with gateway.database.transaction() as database:
+    with gateway.transaction() as database:
         metrics = shapes.stored_metrics(records.get_session(database, session))
     if metrics is None:
         raise Problem(
@@ -203,5 +212,5 @@ def _check_offered(gateway: Gateway, source: str) -> None:
 
 def _give_up(gateway: Gateway, session: str, reason: str) -> None:
     log.info("event=session_not_started session=%s", session)
-    with gateway.database.transaction() as database:
+    with gateway.transaction() as database:
         records.record_end(database, session, SessionState.FAILED, reason)

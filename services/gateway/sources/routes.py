@@ -4,6 +4,7 @@ from fastapi import APIRouter
 from pydantic import BaseModel, ConfigDict, Field
 
 from schemas.vocabulary import Task
+from services.gateway.access.rules import READ
 from services.gateway.context import Context
 from services.gateway.control import SYNTHETIC_SOURCES, ControlUnavailable, SourceKind, Worn, worn_by
 from services.gateway.problems import documented
@@ -46,7 +47,7 @@ class SourcesOut(BaseModel):
     estimators: list[EstimatorOut]
 
 
-@router.get("", responses=documented())
+@router.get("", dependencies=READ, responses=documented())
 def list_sources(gateway: Context) -> SourcesOut:
     """Devices that send to the ingest, recordings that it has at hand, and the simulated people."""
     try:

@@ -5,6 +5,7 @@ from typing import Annotated
 
 from fastapi import APIRouter, Path
 
+from services.gateway.access.rules import READ, WORK
 from services.gateway.context import Context, Limit, Offset, PatientCode
 from services.gateway.patients.records import get_patient
 from services.gateway.problems import Problem, documented
@@ -18,29 +19,34 @@ router = APIRouter(prefix="/v1/patients", tags=["progress"])
 Number = Annotated[int, Path(ge=1, description="number of the treatment", examples=[7])]
 
 
-@router.post("/{code}/treatments", status_code=HTTPStatus.CREATED, responses=documented(HTTPStatus.NOT_FOUND))
+@router.post(
+    "/{code}/treatments", dependencies=WORK, status_code=HTTPStatus.CREATED, responses=documented(HTTPStatus.NOT_FOUND)
+)
 def add_treatment(code: PatientCode, body: TreatmentIn, gateway: Context) -> TreatmentOut:
     """Note what was done for the patient on a day; shown as a mark beside the progress."""
-    with gateway.database.transaction() as database:
+    with gateway.transaction() as database:
         get_patient(database, code)
         return _shape(records.add_treatment(database, code, body.date, body.kind))
 
 
-@router.get("/{code}/treatments", responses=documented(HTTPStatus.NOT_FOUND))
+@router.get("/{code}/treatments", dependencies=READ, responses=documented(HTTPStatus.NOT_FOUND))
 def list_treatments(code: PatientCode, gateway: Context, offset: Offset = 0, limit: Limit = 50) -> TreatmentPage:
     """List what was done for the patient, newest first."""
-    with gateway.database.transaction() as database:
+    with gateway.transaction() as database:
         get_patient(database, code)
         total, rows = records.list_treatments(database, code, offset, limit)
         return TreatmentPage(total=total, items=[_shape(row) for row in rows])
 
 
 @router.delete(
-    "/{code}/treatments/{number}", status_code=HTTPStatus.NO_CONTENT, responses=documented(HTTPStatus.NOT_FOUND)
+    "/{code}/treatments/{number}",
+    dependencies=WORK,
+    status_code=HTTPStatus.NO_CONTENT,
+    responses=documented(HTTPStatus.NOT_FOUND),
 )
 def delete_treatment(code: PatientCode, number: Number, gateway: Context) -> None:
     """Take a treatment away that was noted by mistake."""
-    with gateway.database.transaction() as database:
+    with gateway.transaction() as database:
         get_patient(database, code)
         if not records.delete_treatment(database, code, number):
             raise Problem(

@@ -4,6 +4,7 @@ from http import HTTPStatus
 
 from fastapi import APIRouter
 
+from services.gateway.access.rules import READ
 from services.gateway.context import Context, Limit, Offset, PatientCode
 from services.gateway.patients.records import get_patient
 from services.gateway.problems import documented
@@ -15,10 +16,10 @@ from services.gateway.visits.shapes import visit_out
 router = APIRouter(prefix="/v1/patients", tags=["progress"])
 
 
-@router.get("/{code}/visits", responses=documented(HTTPStatus.NOT_FOUND))
+@router.get("/{code}/visits", dependencies=READ, responses=documented(HTTPStatus.NOT_FOUND))
 def list_visits(code: PatientCode, gateway: Context, offset: Offset = 0, limit: Limit = 50) -> VisitPage:
     """List the visits of a patient, newest first: what was done and the headline metrics."""
-    with gateway.database.transaction() as database:
+    with gateway.transaction() as database:
         get_patient(database, code)
         rows = sessions_of(database, code)
         visits = visits_of(rows)

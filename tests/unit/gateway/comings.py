@@ -3,6 +3,7 @@
 from datetime import UTC, datetime, timedelta
 
 from schemas.conditions import Conditions
+from services.gateway.access.scope import EVERYTHING
 from services.gateway.sessions import records
 from tests.unit.gateway.walk import describe
 from tests.unit.progress.patient import SAID, comparison, metric, results
@@ -24,8 +25,8 @@ def come(gateway, code, session, day, speed, *, distance=0.2, said=SAID, hours=0
     )
     told = results(metric(speed, grade=grade), metric(12, name="strides_counted", side="left", unit="1"),
                    sides=[comparison(distance)])  # fmt: skip
-    with gateway.database.transaction() as database:
-        row = records.record_start(database, description)
+    with gateway.database.transaction(EVERYTHING) as database:
+        row = records.record_start(database, description, "main")
         row.patient_code, row.created = code, began
         database.flush()
         records.record_metrics(database, session, told)

@@ -7,10 +7,12 @@ import pytest
 from fastapi.testclient import TestClient
 
 from schemas.session import SessionDescription
+from services.gateway.access.roles import Role
 from services.gateway.app import create_app
 from services.gateway.control import ControlRefused, Source, StartRequest
 from services.gateway.live.hub import LiveHub
 from services.gateway.settings import GatewaySettings
+from tests.unit.gateway import people
 from tests.unit.gateway.walk import contact_at, describe, metrics_at, pose_at, stride_at
 
 CAMERA = "device:kinect?port=7788"
@@ -82,11 +84,19 @@ def hub():
 
 
 @pytest.fixture
-def client(settings, hub, control):
+def stranger(settings, hub, control):
+    """A browser that has not signed in."""
     with TestClient(create_app(settings, hub, control)) as client:
         yield client
 
 
 @pytest.fixture
-def gateway(client):
-    return client.app.state.gateway
+def client(stranger):
+    """A browser of an administrator of the first clinic."""
+    people.sign_in(stranger, Role.ADMIN)
+    return stranger
+
+
+@pytest.fixture
+def gateway(stranger):
+    return stranger.app.state.gateway

@@ -5,6 +5,7 @@ from alembic.autogenerate import compare_metadata
 from alembic.migration import MigrationContext
 from sqlalchemy import inspect, text
 
+from services.gateway.access.scope import EVERYTHING, Scope
 from services.gateway.database import Database, DatabaseError, open_database
 from services.gateway.patients.models import PatientIn
 from services.gateway.patients.records import add_patient
@@ -33,22 +34,22 @@ def test_down_and_up_again(database):
 
 
 def test_migrating_again_keeps_the_data(database, made):
-    with database.transaction() as session:
+    with database.transaction(Scope("main")) as session:
         add_patient(session, PatientIn(year_of_birth=1957))
-        records.record_start(session, made.describe("a"))
+        records.record_start(session, made.describe("a"), "main")
         session.flush()
         records.record_metrics(session, "a", made.metrics_at(5.0, final=True))
     database.migrate()
-    with database.transaction() as session:
+    with database.transaction(EVERYTHING) as session:
         assert records.get_session(session, "a").metrics.final
 
 
 def test_sessions_from_before_tasks_were_walks(database, made):
-    with database.transaction() as session:
-        records.record_start(session, made.describe("a"))
+    with database.transaction(EVERYTHING) as session:
+        records.record_start(session, made.describe("a"), "main")
     database.migrate("0002")
     database.migrate()
-    with database.transaction() as session:
+    with database.transaction(EVERYTHING) as session:
         row = records.get_session(session, "a")
         assert (row.task, row.walkway_m, row.calibration) == ("walk", None, None)
 
@@ -63,21 +64,21 @@ def test_commits_survive_a_power_cut_and_readers_do_not_wait(database):
 
 def test_a_transaction_that_fails_leaves_nothing(database):
     def fail():
-        with database.transaction() as session:
+        with database.transaction(Scope("main")) as session:
             add_patient(session, PatientIn())
             raise RuntimeError
 
     with pytest.raises(RuntimeError):
         fail()
-    with database.transaction() as session:
+    with database.transaction(EVERYTHING) as session:
         assert session.query(PatientRow).count() == 0
 
 
 def test_times_come_back_in_utc(database):
     there = datetime(2026, 11, 22, 10, 0, tzinfo=timezone(timedelta(hours=5)))
-    with database.transaction() as session:
-        session.add(PatientRow(code="A", year_of_birth=None, created=there))
-    with database.transaction() as session:
+    with database.transaction(EVERYTHING) as session:
+        session.add(PatientRow(clinic_id="main", code="A", year_of_birth=None, created=there))
+    with database.transaction(EVERYTHING) as session:
         stored = session.get(PatientRow, "A").created
     assert stored == there
     assert stored.tzinfo is UTC

@@ -8,6 +8,7 @@ from schemas.signals import GAIT_EVENT, JOINT_STATE
 from schemas.vocabulary import LOWER_BODY
 from services.exports.formats import FORMATS
 from services.flow.message import encode_payload
+from services.gateway.access.scope import EVERYTHING
 from services.gateway.exports import writing
 from services.gateway.sessions import records
 
@@ -27,7 +28,7 @@ def joint_state(captured_ns):
 def exported(client, gateway, settings, made, recorded, tape):
     """Session `a`, recorded and over."""
     gateway.keeper.appeared(made.describe("a"))
-    with gateway.database.transaction() as database:
+    with gateway.database.transaction(EVERYTHING) as database:
         records.record_metrics(database, "a", made.metrics_at(9.0, final=True))
     folder = settings.data_dir / "a"
     folder.mkdir(parents=True)

@@ -1,6 +1,7 @@
 import pytest
 from sqlalchemy.exc import OperationalError
 
+from services.gateway.access.scope import EVERYTHING
 from services.gateway.database import open_database
 from services.gateway.live.hub import LiveHub
 from services.gateway.parameters import GatewayParameters
@@ -29,14 +30,14 @@ def keeper(tmp_path, clock):
 
 
 def state(keeper, session):
-    with keeper.database.transaction() as database:
+    with keeper.database.transaction(EVERYTHING) as database:
         row = records.get_session(database, session)
         return row.state, row.reason
 
 
 def test_a_session_that_starts_by_itself_is_unassigned_and_live(keeper, made):
     keeper.appeared(made.describe("a", title="Device"))
-    with keeper.database.transaction() as database:
+    with keeper.database.transaction(EVERYTHING) as database:
         row = records.get_session(database, "a")
         assert (row.patient_code, row.state, row.title, row.source) == (None, "live", "Device", None)
     assert keeper.live.is_live("a")
@@ -59,7 +60,7 @@ def test_a_session_is_as_long_as_the_services_came_not_as_its_last_stride(keeper
     keeper.settle()
     keeper.progressed("a", 25.0)
     keeper.settle()
-    with keeper.database.transaction() as database:
+    with keeper.database.transaction(EVERYTHING) as database:
         row = records.get_session(database, "a")
         assert (row.state, row.duration_s) == ("finished", 25.0)
         assert (row.ended - row.started).total_seconds() == pytest.approx(25.0)
@@ -69,7 +70,7 @@ def test_later_metrics_do_not_replace_final_ones(keeper, made):
     keeper.appeared(made.describe("a"))
     keeper.measured("a", made.metrics_at(20.0, final=True))
     keeper.measured("a", made.metrics_at(10.0, final=False))
-    with keeper.database.transaction() as database:
+    with keeper.database.transaction(EVERYTHING) as database:
         stored = records.get_session(database, "a").metrics
         assert (stored.final, stored.body["captured_ns"]) == (True, 20_000_000_000)
 
@@ -113,8 +114,8 @@ def test_after_a_restart_a_finished_session_stays_finished(keeper, made):
 
 
 def test_after_a_restart_sessions_that_nobody_runs_are_interrupted(keeper, clock, made):
-    with keeper.database.transaction() as database:
-        records.add_requested(database, "lost", SessionIn(source="synthetic:walk"))
+    with keeper.database.transaction(EVERYTHING) as database:
+        records.add_requested(database, "lost", SessionIn(source="synthetic:walk"), "main")
     keeper.appeared(made.describe("runs"))
     again = SessionKeeper(keeper.database, keeper.live, clock=clock)
     again.adopt_open_sessions()
@@ -126,7 +127,7 @@ def test_after_a_restart_sessions_that_nobody_runs_are_interrupted(keeper, clock
 
 
 def test_live_goes_on_without_the_database_and_what_was_not_written_is_written_later(keeper, monkeypatch, made):
-    def away():
+    def away(_scope):
         raise OperationalError("select 1", {}, Exception("gone"))
 
     with monkeypatch.context() as broken:
@@ -138,5 +139,5 @@ def test_live_goes_on_without_the_database_and_what_was_not_written_is_written_l
         assert keeper.live.is_live("a")
     keeper.settle()
     assert state(keeper, "a") == ("live", None)
-    with keeper.database.transaction() as database:
+    with keeper.database.transaction(EVERYTHING) as database:
         assert records.get_session(database, "a").metrics.body["captured_ns"] == 6_000_000_000

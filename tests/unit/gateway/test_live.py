@@ -7,6 +7,7 @@ import time
 import pytest
 from starlette.websockets import WebSocketDisconnect
 
+from services.gateway.access.scope import EVERYTHING
 from services.gateway.live import views
 from services.gateway.live.hub import LiveHub, NotLive, TooManyViewers
 from services.gateway.live.viewer import TRY_AGAIN, Ended, Viewer
@@ -160,7 +161,7 @@ def run(coroutine):
 
 def test_a_slow_viewer_skips_skeletons_and_gets_the_newest():
     async def scene():
-        viewer = Viewer(event_queue=4)
+        viewer = Viewer(event_queue=4, scope=EVERYTHING)
         for number in range(100):
             viewer.show("pose", str(number))
         assert await viewer.take() == "99"
@@ -171,7 +172,7 @@ def test_a_slow_viewer_skips_skeletons_and_gets_the_newest():
 
 def test_a_viewer_that_takes_no_events_is_let_go_to_read_again():
     async def scene():
-        viewer = Viewer(event_queue=4)
+        viewer = Viewer(event_queue=4, scope=EVERYTHING)
         for number in range(5):
             viewer.tell(str(number))
         with pytest.raises(Ended) as ended:
@@ -183,7 +184,7 @@ def test_a_viewer_that_takes_no_events_is_let_go_to_read_again():
 
 def test_events_go_before_skeletons_and_the_end_comes_last():
     async def scene():
-        viewer = Viewer(event_queue=4)
+        viewer = Viewer(event_queue=4, scope=EVERYTHING)
         viewer.show("pose", "pose")
         viewer.tell("event")
         viewer.end(1000, "over")
@@ -200,7 +201,7 @@ def test_one_viewer_that_never_reads_delays_nobody(made):
         hub.bind(asyncio.get_running_loop())
         hub.open(made.describe("a"))
         await asyncio.sleep(0)
-        with hub.watch("a") as stuck, hub.watch("a") as quick:
+        with hub.watch("a", EVERYTHING) as stuck, hub.watch("a", EVERYTHING) as quick:
             seen = []
             for number in range(20):
                 hub.pose("a", payload(made.pose_at(float(number + 1))))
@@ -220,12 +221,12 @@ def test_viewers_are_bounded_and_leave_nothing_behind(made):
     async def scene():
         hub = LiveHub(GatewayParameters(most_viewers=2))
         hub.open(made.describe("a"))
-        with pytest.raises(NotLive), hub.watch("b"):
+        with pytest.raises(NotLive), hub.watch("b", EVERYTHING):
             pass
-        with hub.watch("a"), hub.watch_floor():
-            with pytest.raises(TooManyViewers), hub.watch("a"):
+        with hub.watch("a", EVERYTHING), hub.watch_floor(EVERYTHING):
+            with pytest.raises(TooManyViewers), hub.watch("a", EVERYTHING):
                 pass
-            with pytest.raises(TooManyViewers), hub.watch_floor():
+            with pytest.raises(TooManyViewers), hub.watch_floor(EVERYTHING):
                 pass
         live = hub._sessions["a"]
         assert (live.viewers, live.task, hub._floor_viewers, hub._floor_task) == (set(), None, set(), None)

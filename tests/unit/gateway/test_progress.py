@@ -2,6 +2,7 @@ from http import HTTPStatus
 
 import pytest
 
+from services.gateway.access.scope import EVERYTHING
 from services.gateway.progress import records
 from services.progress.baseline import freeze
 from tests.unit.gateway.comings import come, come_often, new_patient
@@ -111,7 +112,7 @@ def test_a_baseline_whose_session_was_another_patients_is_forgotten(client, code
 def test_two_who_ask_at_once_get_the_same_baseline(client, gateway, code, monkeypatch):
     def frozen_meanwhile(visits, *others):
         monkeypatch.setattr(records, "freeze", freeze)
-        with gateway.database.transaction() as database:
+        with gateway.database.transaction(EVERYTHING) as database:
             records.keep_baseline(database, code, freeze(visits, "s1", *others[1:]))
         return freeze(visits, *others)
 

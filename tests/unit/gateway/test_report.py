@@ -9,6 +9,7 @@ from schemas.archive_layout import Manifest, RecordingState, SegmentEntry
 from schemas.signals import STRIDE
 from schemas.vocabulary import Side
 from services.flow.message import Stream, encode_payload
+from services.gateway.access.scope import EVERYTHING
 from services.gateway.report.gather import recording_digest
 from services.gateway.sessions import records
 from services.gateway.sessions.models import SessionState
@@ -99,7 +100,7 @@ def test_without_final_metrics_there_is_no_report_and_the_answer_says_what_to_do
 def test_a_session_that_broke_off_can_be_computed_from_its_recording(client, gateway, made):
     gateway.keeper.appeared(made.describe(WALK))
     gateway.keeper.measured(WALK, made.metrics_at(20.0, final=False))
-    with gateway.database.transaction() as database:
+    with gateway.database.transaction(EVERYTHING) as database:
         records.record_end(database, WALK, SessionState.INTERRUPTED, "the feed broke off")
     answer = client.get(f"/v1/sessions/{WALK}/report")
     assert answer.status_code == 409
@@ -128,7 +129,7 @@ def test_the_report_is_json_without_anything_that_is_no_number(client, walked):
 def recorded_walk(client, gateway, settings, made, recorded, tape):
     """Session `a` with six strides in its recording, one of them rejected."""
     gateway.keeper.appeared(made.describe("a"))
-    with gateway.database.transaction() as database:
+    with gateway.database.transaction(EVERYTHING) as database:
         records.record_metrics(database, "a", made.metrics_at(9.0, final=True))
     folder = settings.data_dir / "a"
     folder.mkdir(parents=True)

@@ -7,6 +7,7 @@ import pytest
 from schemas.rhythm import LearnedJoint, LearnedRhythm
 from schemas.signals import LEARNED_RHYTHM
 from services.flow.message import Envelope, Message, Stream
+from services.gateway.access.scope import EVERYTHING
 from services.gateway.bus_feed import BusFeed, BusLink
 from services.gateway.sessions.keeper import SessionKeeper
 from services.gateway.sessions.rhythms import known_rhythms, record_rhythm
@@ -25,9 +26,10 @@ def learned(strides: int = 8) -> LearnedRhythm:
 
 def walked(gateway, code: str | None, hours_ago: float, strides: int, name: str) -> None:
     """A session of the patient that began so long ago and learned this many strides."""
-    with gateway.database.transaction() as database:
+    with gateway.database.transaction(EVERYTHING) as database:
         database.add(
             SessionRow(
+                clinic_id="main",
                 id=name, patient_code=code, title="", protocol="", state="finished",
                 created=NOW - timedelta(hours=hours_ago), estimator="ekf", origin="synthetic",
             )
@@ -42,7 +44,7 @@ def code(client):
 
 
 def known(gateway, code):
-    with gateway.database.transaction() as database:
+    with gateway.database.transaction(EVERYTHING) as database:
         return [(each.kind, each.name, each.rhythm.strides) for each in known_rhythms(database, code, NOW)]
 
 
@@ -65,7 +67,7 @@ def test_other_people_and_unassigned_sessions_are_not_theirs(client, gateway, co
 
 def test_a_session_of_a_patient_starts_with_what_is_known(client, gateway, control, code):
     client.post("/v1/sessions", json={"source": SOURCE, "patient": code})
-    with gateway.database.transaction() as database:
+    with gateway.database.transaction(EVERYTHING) as database:
         record_rhythm(database, control.started[0].session, learned())
     client.post("/v1/sessions", json={"source": SOURCE, "patient": code})
     client.post("/v1/sessions", json={"source": SOURCE})
@@ -79,10 +81,10 @@ def test_the_newest_rhythm_of_a_session_is_kept_as_it_comes(gateway, settings, m
     feed = BusFeed(settings, BusLink(), gateway.live, keeper)
     for sequence, strides in enumerate((4, 9)):
         feed.take("a", Message(Stream(LEARNED_RHYTHM, "estimation"), Envelope(0, sequence, 9), learned(strides)))
-    with gateway.database.transaction() as database:
+    with gateway.database.transaction(EVERYTHING) as database:
         assert database.get(RhythmRow, "a").body["strides"] == 9
 
 
 def test_a_rhythm_of_an_unknown_session_is_left(gateway):
-    with gateway.database.transaction() as database:
+    with gateway.database.transaction(EVERYTHING) as database:
         assert not record_rhythm(database, "nobody", learned())

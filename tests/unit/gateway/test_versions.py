@@ -7,6 +7,7 @@ import pytest
 
 from schemas.archive_layout import SegmentName
 from schemas.session import SessionDescription
+from services.gateway.access.scope import EVERYTHING
 from services.gateway.tables import FormerMetricsRow, SessionRow
 from services.gateway.versions.records import replace_metrics
 
@@ -36,7 +37,7 @@ def measured(client, gateway, made, result):
 
 
 def replace(gateway, metrics, session="a"):
-    with gateway.database.transaction() as database:
+    with gateway.database.transaction(EVERYTHING) as database:
         return replace_metrics(database, session, metrics)
 
 
@@ -70,7 +71,7 @@ def test_versions_come_back_and_each_is_kept_once(client, measured, result):
         replace(measured, result(software, speed))
     versions = client.get("/v1/sessions/a/versions").json()["versions"]
     assert [version["software"] for version in versions] == [NEWER, OLD, NEW]
-    with measured.database.transaction() as database:
+    with measured.database.transaction(EVERYTHING) as database:
         assert database.query(FormerMetricsRow).count() == 2
 
 
@@ -94,7 +95,7 @@ def test_a_session_without_metrics_has_no_version(client, gateway, made):
 def test_a_former_result_of_an_older_schema_is_still_shown(client, measured, result):
     replace(measured, result(NEW, 1.0))
     later = ("low", "high", "grade", "doubts")
-    with measured.database.transaction() as database:
+    with measured.database.transaction(EVERYTHING) as database:
         newest = database.get(FormerMetricsRow, ("a", OLD)).body
         metrics = [{key: value for key, value in each.items() if key not in later} for each in newest["metrics"]]
         body = {"captured_ns": newest["captured_ns"], "final": True, "metrics": metrics, "curves": newest["curves"]}
@@ -108,10 +109,10 @@ def test_a_former_result_of_an_older_schema_is_still_shown(client, measured, res
 
 def test_a_session_from_before_descriptions_were_kept_gets_its_own(client, measured, result, made):
     described = made.describe("a")
-    with measured.database.transaction() as database:
+    with measured.database.transaction(EVERYTHING) as database:
         database.get(SessionRow, "a").description = None
-    with measured.database.transaction() as database:
+    with measured.database.transaction(EVERYTHING) as database:
         assert replace_metrics(database, "a", result(NEW, 1.1), described)
-    with measured.database.transaction() as database:
+    with measured.database.transaction(EVERYTHING) as database:
         stored = database.get(SessionRow, "a").description
     assert SessionDescription.model_validate(stored) == described

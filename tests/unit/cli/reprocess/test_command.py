@@ -14,6 +14,7 @@ from services.cli.reprocess.recompute import CannotRecompute, open_archived
 from services.cli.reprocess.sessions import outcomes
 from services.cli.reprocess.storing import WORK_FOLDER, DerivedFile
 from services.flow.software import SOFTWARE, VERSION
+from services.gateway.access.scope import EVERYTHING
 from services.gateway.database import open_database
 from services.gateway.sessions.records import record_metrics, record_start
 from services.gateway.tables import FormerMetricsRow, MetricsRow
@@ -57,8 +58,8 @@ def database(older, walked):
     stored = open_database(f"sqlite:///{older / 'ambula.sqlite'}")
     last = [message.payload for message in open_recording(older / description.session).messages()
             if isinstance(message.payload, SessionMetrics)][-1]  # fmt: skip
-    with stored.transaction() as transaction:
-        record_start(transaction, description)
+    with stored.transaction(EVERYTHING) as transaction:
+        record_start(transaction, description, "main")
         record_metrics(transaction, description.session, last)
     yield stored
     stored.close()
@@ -93,13 +94,13 @@ def test_storing_adds_a_file_and_keeps_the_former_result(older, walked, database
     assert NEW in [entry.name for entry in read_manifest(folder).files]
     assert not (folder / WORK_FOLDER).exists()
     assert len(list(open_recording(folder, VERSION).messages())) == len(walked[1])
-    with database.transaction() as transaction:
+    with database.transaction(EVERYTHING) as transaction:
         current = transaction.get(MetricsRow, folder.name)
         former = transaction.get(FormerMetricsRow, (folder.name, OLD))
         assert (current.software, current.final) == (SOFTWARE, True)
         assert [metric["value"] for metric in former.body["metrics"] if metric["name"] == "walking_speed"] == [9.9]
     assert "identical" in run(older, "--all", "--store")[1]
-    with database.transaction() as transaction:
+    with database.transaction(EVERYTHING) as transaction:
         assert transaction.query(FormerMetricsRow).count() == 1
 
 

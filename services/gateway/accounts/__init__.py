@@ -1,0 +1,1 @@
+"""Signing in: local accounts, their passwords, and what a browser holds meanwhile."""

@@ -1,0 +1,106 @@
+"""Writes an entry for every request that concerns a patient, before its answer goes out. Plain ASGI.
+
+The same person reading the same thing again and again, as an open page does, is one entry in five minutes.
+"""
+
+import logging
+from collections import OrderedDict
+from collections.abc import Callable
+from datetime import UTC, datetime
+
+from sqlalchemy.exc import SQLAlchemyError
+from starlette.concurrency import run_in_threadpool
+from starlette.types import ASGIApp, Message, Receive, Scope, Send
+
+from services.gateway.access.caller import Caller
+from services.gateway.access.roles import ABOUT_PATIENTS
+from services.gateway.access.rules import rule_of
+from services.gateway.access.scope import EVERYTHING
+from services.gateway.audit import records
+from services.gateway.audit.chain import Entry
+from services.gateway.database import Database
+
+log = logging.getLogger(__name__)
+
+SAME_READING_S = 300.0
+MOST_REMEMBERED = 4096
+READING = ("GET", "HEAD")
+CLIENT_ERROR = 400
+
+
+class AuditTrail:
+    """Around the application."""
+
+    def __init__(
+        self, app: ASGIApp, database: Database, clock: Callable[[], datetime] = lambda: datetime.now(UTC)
+    ) -> None:
+        self.app = app
+        self._database = database
+        self._clock = clock
+        self._read: OrderedDict[tuple[object, ...], datetime] = OrderedDict()
+
+    async def __call__(self, scope: Scope, receive: Receive, send: Send) -> None:
+        """ASGI entry."""
+        if scope["type"] != "http":
+            await self.app(scope, receive, send)
+            return
+
+        async def send_after_entry(message: Message) -> None:
+            if message["type"] == "http.response.start":
+                entry = self._entry(scope, message["status"])
+                if entry is not None and not self._is_repeated(scope["method"], entry):
+                    await run_in_threadpool(self._append, entry)
+            await send(message)
+
+        await self.app(scope, receive, send_after_entry)
+
+    def _entry(self, scope: Scope, status: int) -> Entry | None:
+        route = scope.get("route")
+        dependant = getattr(route, "dependant", None)
+        if route is None or dependant is None:
+            return None
+        permission = rule_of(route.path, dependant)
+        if permission not in ABOUT_PATIENTS and scope["method"] in READING:
+            return None
+        return entry_of(scope, route.name, status, self._clock())
+
+    def _is_repeated(self, method: str, entry: Entry) -> bool:
+        if method not in READING:
+            return False
+        key = (entry.actor, entry.action, entry.patient, entry.session, entry.object, entry.outcome)
+        before = self._read.get(key)
+        if before is not None and (entry.at - before).total_seconds() < SAME_READING_S:
+            return True
+        self._read[key] = entry.at
+        self._read.move_to_end(key)
+        if len(self._read) > MOST_REMEMBERED:
+            self._read.popitem(last=False)
+        return False
+
+    def _append(self, entry: Entry) -> None:
+        try:
+            with self._database.transaction(EVERYTHING) as database:
+                records.append(database, entry)
+        except SQLAlchemyError:
+            # The database that would hold the entry is the one the answer came from: it has just gone away.
+            log.exception("event=not_audited action=%s outcome=%d", entry.action, entry.outcome)
+
+
+def entry_of(scope: Scope, action: str, outcome: int, at: datetime) -> Entry:
+    """What is known of a request or socket: who, and which patient or session its address names."""
+    caller: Caller | None = scope.get("state", {}).get("caller")
+    named = scope.get("path_params", {})
+    others = [f"{name}={value}" for name, value in named.items() if name not in ("code", "session")]
+    return Entry(
+        at=at,
+        actor_kind=caller.kind if caller is not None else "nobody",
+        actor=caller.account if caller is not None else None,
+        role=caller.role if caller is not None else None,
+        clinic=caller.clinic if caller is not None else None,
+        action=action,
+        patient=named.get("code"),
+        session=named.get("session"),
+        object=" ".join(others)[:120] or None,
+        outcome=outcome,
+        reason=scope.get("state", {}).get("reason"),
+    )
