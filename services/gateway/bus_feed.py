@@ -9,10 +9,12 @@ from schemas.gait import GaitEvent, Stride
 from schemas.health import Health, Progress
 from schemas.kinematics import Calibration
 from schemas.metrics import SessionMetrics
+from schemas.quality import DataQuality
 from schemas.rhythm import LearnedRhythm
 from schemas.session import SessionDescription
 from schemas.signals import (
     CALIBRATION,
+    DATA_QUALITY,
     GAIT_EVENT,
     LEARNED_RHYTHM,
     LIVE_POSE,
@@ -44,7 +46,7 @@ SESSION_WORD = 2
 
 STREAMS = tuple(
     Stream(signal, signal.producer)
-    for signal in (CALIBRATION, GAIT_EVENT, STRIDE, TASK_PHASE, REPETITION, LEARNED_RHYTHM, METRICS)
+    for signal in (CALIBRATION, DATA_QUALITY, GAIT_EVENT, STRIDE, TASK_PHASE, REPETITION, LEARNED_RHYTHM, METRICS)
 )
 """Followed in order and without loss, for every session."""
 
@@ -154,6 +156,8 @@ class BusFeed:
                 self._live.tell(session, views.repetition_view(repetition))
             case Calibration() as calibration:
                 self._keeper.calibrated(session, calibration)
+            case DataQuality() as quality:
+                self._live.measure(session, quality)
             case LearnedRhythm() as rhythm:
                 self._keeper.learned(session, rhythm)
             case SessionMetrics() as metrics:

@@ -3,9 +3,9 @@
 import time
 from collections.abc import Callable
 from dataclasses import dataclass
-from typing import Any
+from typing import Any, Literal
 
-from schemas.health import Health
+from schemas.health import Health, Reason
 
 SERVICES = ("ingest", "estimation", "segmentation", "metrics", "archive")
 """Services that a working floor needs beside the gateway."""
@@ -49,6 +49,18 @@ class HealthBoard:
     def is_stale(self, age_s: float) -> bool:
         """Whether a report of that age means that the service is silent."""
         return age_s > self._stale_s
+
+    def recording_stopped(self, session: str) -> Literal["disk", "refused"] | None:
+        """Why the archive does not record a session just now: no space, or the disk refuses. None while it does,
+        or while nobody knows."""
+        for health, age in self.reports():
+            if health.service != "archive" or self.is_stale(age):
+                continue
+            own = [found for each in health.sessions if each.session == session for found in each.rejections]
+            if any(found.reason is Reason.NOT_RECORDED for found in own):
+                full = any(found.reason is Reason.DISK_LOW for found in health.rejections)
+                return "disk" if full else "refused"
+        return None
 
     def brief(self) -> dict[str, Any]:
         """For every screen: is anybody out there, and who is not."""

@@ -10,7 +10,9 @@ from collections.abc import Callable, Iterator
 from dataclasses import dataclass, field
 
 from schemas.kinematics import LivePose
+from schemas.quality import DataQuality
 from schemas.session import SessionDescription
+from services.bus.logs import event
 from services.gateway.access.scope import Scope
 from services.gateway.health.board import HealthBoard
 from services.gateway.live import views
@@ -22,6 +24,8 @@ from services.gateway.parameters import GatewayParameters
 log = logging.getLogger(__name__)
 
 _CARD_HEAD = ("id", "title", "patient", "task", "estimator", "started_unix_s", "duration_s")
+_PERIODS = 2
+"""Between words on the quality of the data, 5 s each: what is told of a sensor is of the last ten seconds."""
 _CARD_PHASES = 5
 """As many as a timed up and go has; a six-minute walk has dozens, which no card shows."""
 
@@ -52,6 +56,7 @@ class LiveSession:
     memory: Memory = field(default_factory=Memory)
     viewers: set[Viewer] = field(default_factory=set)
     task: asyncio.Task[None] | None = None
+    qualities: deque[DataQuality] = field(default_factory=lambda: deque(maxlen=_PERIODS))
 
 
 class LiveHub:
@@ -89,6 +94,10 @@ class LiveHub:
     def tell(self, session: str, view: View) -> None:
         """An event of a session, for everybody who watches it. Remembers what a late viewer must know."""
         self._on_loop(lambda: self._tell(session, view))
+
+    def measure(self, session: str, quality: DataQuality) -> None:
+        """What the sensors of a session told so far: viewers hear what came of the last ten seconds."""
+        self._on_loop(lambda: self._measure(session, quality))
 
     def close(self, session: str, state: str) -> None:
         """A session is over: viewers are told its state, then let go."""
@@ -188,6 +197,14 @@ class LiveHub:
         for viewer in live.viewers:
             viewer.tell(text)
 
+    def _measure(self, session: str, quality: DataQuality) -> None:
+        live = self._sessions.get(session)
+        if live is None:
+            return
+        before = live.qualities[0] if live.qualities else None
+        live.qualities.append(quality)
+        self._tell(session, views.quality_view(quality, before))
+
     def _close(self, session: str, state: str) -> None:
         live = self._sessions.get(session)
         if live is None:
@@ -228,7 +245,7 @@ class LiveHub:
             return LivePose.model_validate_json(arrived.payload)
         except ValueError:
             self.undecodable += 1
-            log.warning("event=undecodable_pose session=%s count=%d", session, self.undecodable)
+            log.warning(event("undecodable_pose", session=session, count=self.undecodable))
             return None
 
     def _pose_view(self, session: str, fresh: list[ArrivedPose]) -> View | None:
@@ -244,7 +261,8 @@ class LiveHub:
         return None if newest is None else round(self.clock() - newest.received_s, 2)
 
     def _status_view(self, session: str) -> View:
-        return {"kind": "status", "age_s": self._age_s(session), **self.health.brief()}
+        stopped = self.health.recording_stopped(session)
+        return {"kind": "status", "age_s": self._age_s(session), "recording_stopped": stopped, **self.health.brief()}
 
     def _show_cards(self, viewers: set[Viewer]) -> None:
         """Each card is made once, and each list once for all who may see the same."""
@@ -272,5 +290,6 @@ class LiveHub:
             "strides": sum(view["index"] + 1 for view in live.memory.of("stride")),
             "repetitions": sum(view["index"] + 1 for view in live.memory.of("repetition")),
             "task_phases": live.memory.newest_phases(_CARD_PHASES),
+            "recording_stopped": self.health.recording_stopped(session),
             "misplaced": next((view["misplaced"] for view in live.memory.of("calibration")), {}),
         }

@@ -25,7 +25,7 @@ class Memory:
     def keep(self, view: View) -> None:
         """Remember a view in place of the one before it, if it is of a kind that matters later."""
         match view["kind"]:
-            case "metrics" | "calibration" as kind:
+            case "metrics" | "calibration" | "data_quality" as kind:
                 self._views[kind,] = view
             case "stride":
                 self._views["stride", view["side"]] = view

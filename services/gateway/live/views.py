@@ -6,6 +6,7 @@ from typing import Any
 from schemas.gait import GaitEvent, Stride
 from schemas.kinematics import Calibration, LivePose
 from schemas.metrics import Metric, SessionMetrics
+from schemas.quality import DataQuality, SourceQuality
 from schemas.session import SessionDescription
 from schemas.tasks import Repetition, TaskPhase
 
@@ -186,6 +187,31 @@ def repetition_view(repetition: Repetition) -> View:
         "valid": repetition.valid,
         "rejected_because": repetition.rejected_because,
     }
+
+
+def quality_view(newest: DataQuality, before: DataQuality | None) -> View:
+    """What each sensor told between two words on the quality of the data; of the session so far without one before.
+
+    `lost` are the samples that were due and never came, `refused` those that came and could not be used: both a share
+    of the samples due.
+    """
+    earlier = {} if before is None else {each.name: each for each in before.sources}
+    return {
+        "kind": "data_quality",
+        "at_s": seconds(newest.captured_ns),
+        "since_s": 0.0 if before is None else seconds(before.captured_ns),
+        "sources": [_shares(each, earlier.get(each.name)) for each in newest.sources],
+    }
+
+
+def _shares(now: SourceQuality, before: SourceQuality | None) -> View:
+    due, used, refused = now.expected, now.used, now.rejected
+    if before is not None:
+        due, used, refused = due - before.expected, used - before.used, refused - before.rejected
+    # A sensor's own clock may run a little faster than its nominal rate: more than all is all.
+    shares = (None, None) if due <= 0 else (max(0.0, (due - used - refused) / due), min(1.0, refused / due))
+    lost, refused_share = (None if share is None else round(share, 4) for share in shares)
+    return {"name": now.name, "lost": lost, "refused": refused_share}
 
 
 def metrics_view(metrics: SessionMetrics) -> View:
