@@ -13,6 +13,8 @@ from services.gateway.control import ControlRefused, ControlUnavailable, Source,
 START_TIMEOUT_S = 20.0
 """Opening a long recording takes seconds."""
 TIMEOUT_S = 3.0
+ERASE_TIMEOUT_S = 30.0
+"""A file that is being closed is waited for."""
 
 
 class BusControl:
@@ -50,23 +52,28 @@ class BusControl:
         answer = self._order("mark", {"session": session, "last_s": last_s, "at_s": at_s}, TIMEOUT_S)
         return float(answer["from_s"]), float(answer["to_s"])
 
+    def erase(self, sessions: list[str]) -> list[str]:
+        """Ask the archive to remove recordings."""
+        answer = self._order("erase", {"sessions": sessions}, ERASE_TIMEOUT_S, "archive")
+        return [str(session) for session in answer["erased"]]
+
     def offered(self) -> list[Source]:
         """Ask an ingest what it has."""
         answer = self._order("sources", {}, TIMEOUT_S)
         devices = [Source(each["name"], each["title"], "device", None, "camera") for each in answer.get("devices", [])]
         return devices + [_recording(each) for each in answer.get("recordings", [])]
 
-    def _order(self, command: str, body: dict[str, Any], timeout_s: float) -> dict[str, Any]:
+    def _order(self, command: str, body: dict[str, Any], timeout_s: float, service: str = "ingest") -> dict[str, Any]:
         bus = self._link.bus
         if bus is None:
             raise ControlUnavailable("The gateway has no connection to the router yet.")
-        key = command_key(bus.settings.site, "ingest", command)
+        key = command_key(bus.settings.site, service, command)
         try:
             answers = bus.ask(key, body=json.dumps(body).encode(), timeout_s=timeout_s)
         except RemoteError as error:
             raise ControlRefused(str(error)) from error
         if not answers:
-            raise ControlUnavailable("No ingest service answers.")
+            raise ControlUnavailable(f"No {service} service answers.")
         answer = json.loads(answers[0].payload or b"{}")
         if "error" in answer:
             raise ControlRefused(str(answer["error"]))

@@ -76,6 +76,9 @@ class Control(Protocol):
     def mark(self, session: str, last_s: float, at_s: float | None) -> tuple[float, float]:
         """Mark the last seconds as standing; the span, s of session time. Raises ControlRefused with the reason."""
 
+    def erase(self, sessions: list[str]) -> list[str]:
+        """Remove the recordings of sessions for good; those that are gone. The archive leaves what still runs."""
+
     def offered(self) -> list[Source]:
         """Devices that send to an ingest, and recordings that it has at hand."""
 

@@ -24,6 +24,16 @@ class GatewaySettings(BaseSettings):
     )
     database: str = Field(default="", description="SQLAlchemy URL; empty for a SQLite file in the data folder")
     data_dir: Path = Field(default=Path("data"), description="the folder with the archive's recordings")
+    gateway_dir: Path | None = Field(
+        default=None,
+        description="the gateway's own folder: its keys and the list of erasures; unset means the data folder",
+    )
+    directory: str = Field(
+        default="", description="SQLAlchemy URL of the directory of names; empty for a SQLite file in the own folder"
+    )
+    directory_key_file: Path | None = Field(
+        default=None, description="key of the directory of names; unset means a file in the own folder"
+    )
     references: str = Field(
         default="", description="folders of the clinic's own reference sets, as a path list; the shipped ones come last"
     )
@@ -35,7 +45,22 @@ class GatewaySettings(BaseSettings):
         """The URL to connect to; plain PostgreSQL addresses are given the driver that is installed."""
         if not self.database:
             return f"sqlite:///{self.data_dir / 'ambula.sqlite'}"
-        return self.database.replace("postgresql://", "postgresql+psycopg://", 1)
+        return _with_driver(self.database)
+
+    @property
+    def own_dir(self) -> Path:
+        """What only the gateway writes: keys, heads of the audit, the list of erasures."""
+        return self.gateway_dir or self.data_dir
+
+    @property
+    def directory_url(self) -> str:
+        """The URL of the directory of names."""
+        return _with_driver(self.directory) if self.directory else f"sqlite:///{self.own_dir / 'directory.sqlite'}"
+
+    @property
+    def directory_key(self) -> Path:
+        """Where the key of the directory lies."""
+        return self.directory_key_file or self.own_dir / "directory.key"
 
     @property
     def url(self) -> str:
@@ -49,3 +74,7 @@ class GatewaySettings(BaseSettings):
         if self.http_names is not None:
             return self.http_names
         return LOOPBACK_NAMES if self.http_host in ("127.0.0.1", "localhost", "::1") else ["*"]
+
+
+def _with_driver(url: str) -> str:
+    return url.replace("postgresql://", "postgresql+psycopg://", 1)

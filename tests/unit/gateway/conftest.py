@@ -25,7 +25,13 @@ class FakeControl:
     started: list[StartRequest] = field(default_factory=list)
     stopped: list[str] = field(default_factory=list)
     marked: list[tuple[str, float, float | None]] = field(default_factory=list)
+    erased: list[str] = field(default_factory=list)
     trouble: Exception | None = None
+
+    def erase(self, sessions: list[str]) -> list[str]:
+        self._fail()
+        self.erased += sessions
+        return sessions
 
     def start(self, request: StartRequest) -> SessionDescription:
         self._fail()
