@@ -10,6 +10,7 @@ from schemas.archive_layout import CHECKPOINT_PREFIX, folder_name
 from schemas.checkpoint import StreamPosition
 from services.archive.disk import Disk
 from services.archive.parameters import ArchiveParameters
+from services.bus.logs import event
 
 log = logging.getLogger("archive")
 
@@ -121,7 +122,7 @@ class CheckpointKeeper:
             self._disk.replace_with(path, data)
         except (OSError, ValueError) as error:
             self.failures += 1
-            log.warning("checkpoint of %s/%s not written: %s", *place, error)
+            log.warning(event("checkpoint_not_written", session=place[0], of=place[1], reason=error))
 
 
 def _head(data: bytes) -> _Head | None:

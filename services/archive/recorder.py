@@ -15,6 +15,7 @@ from pathlib import Path
 
 from services.archive.parameters import ArchiveParameters
 from services.archive.writer import PendingSync, SessionWriter
+from services.bus.logs import event
 from services.recordings.record import Record
 
 log = logging.getLogger("archive")
@@ -170,7 +171,7 @@ class Recorder:
 
     def _fail(self, session: str, error: OSError) -> None:
         """The disk refused: the session's files are closed as they are, and the others go on."""
-        log.error("recording of %s stopped: %s", session, error)
+        log.error(event("recording_stopped", session=session, reason=error))
         if session in self._syncs:
             self._syncs.pop(session)[1].exception()
         writer = self._writers.pop(session)

@@ -11,6 +11,7 @@ from services.archive.disk import Disk
 from services.archive.manifest import store, with_files, with_state, with_unlisted
 from services.archive.parameters import ArchiveParameters
 from services.archive.seal import seal
+from services.bus.logs import event
 from services.recordings.chunks import BROKEN
 from services.recordings.errors import ArchiveError
 from services.recordings.folder import read_manifest
@@ -88,11 +89,11 @@ class Sealer:
             do_job(job, self._software, self._disk, self._parameters.chunk_bytes)
         except OSError as error:
             self.failures += 1
-            log.error("%s cannot be closed now: %s; it is tried again", job.folder.name, error)
+            log.error(event("not_sealed", session=job.folder.name, reason=error, next="it is tried again"))
             return False
         except (ArchiveError, *BROKEN) as error:
             self.failures += 1
-            log.error("%s cannot be closed: %s; its .part files are kept as they are", job.folder.name, error)
+            log.error(event("cannot_be_sealed", session=job.folder.name, reason=error, next=".part files are kept"))
         return True
 
     def _next(self) -> SealJob | None:

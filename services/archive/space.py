@@ -5,6 +5,7 @@ from pathlib import Path
 
 from services.archive.disk import Disk
 from services.archive.parameters import GIB, ArchiveParameters
+from services.bus.logs import event
 
 log = logging.getLogger("archive")
 
@@ -34,8 +35,8 @@ class Space:
 
     def _tell(self) -> None:
         if self.stopped:
-            log.error("recording stopped: %s", self.advice)
+            log.error(event("recording_stopped", reason=self.advice))
         elif self.low:
-            log.warning("%s", self.advice)
+            log.warning(event("disk_low", reason=self.advice))
         else:
-            log.info("enough disk space again")
+            log.info(event("disk_enough"))

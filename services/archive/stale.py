@@ -7,6 +7,7 @@ from schemas.archive_layout import RecordingState
 from services.archive.disk import Disk
 from services.archive.recovery import recover
 from services.archive.sealer import SealJob
+from services.bus.logs import event
 from services.recordings.folder import read_manifest, segment_files, session_folders
 
 log = logging.getLogger("archive")
@@ -31,10 +32,10 @@ class StaleFolders:
         try:
             recovered = recover(folder, None, self._version, self._disk)
         except OSError as error:
-            log.error("%s cannot be looked at: %s", folder.name, error)
+            log.error(event("cannot_be_recovered", session=folder.name, reason=error))
             return None
         if recovered is None:
-            log.warning("%s holds nothing that can be read", folder.name)
+            log.warning(event("nothing_to_recover", session=folder.name))
             return None
         return SealJob(folder, recovered.manifest, recovered.parts, RecordingState.INTERRUPTED, REASON)
 

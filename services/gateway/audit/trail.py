@@ -6,18 +6,21 @@ The same person reading the same thing again and again, as an open page does, is
 import logging
 from collections import OrderedDict
 from collections.abc import Callable
+from dataclasses import replace
 from datetime import UTC, datetime
 
 from sqlalchemy.exc import SQLAlchemyError
 from starlette.concurrency import run_in_threadpool
 from starlette.types import ASGIApp, Message, Receive, Scope, Send
 
+from services.bus.logs import event
 from services.gateway.access.caller import Caller
 from services.gateway.access.roles import ABOUT_PATIENTS
 from services.gateway.access.rules import rule_of
 from services.gateway.access.scope import EVERYTHING
 from services.gateway.audit import records
 from services.gateway.audit.chain import Entry
+from services.gateway.audit.noting import NOTHING, noted_in
 from services.gateway.database import Database
 
 log = logging.getLogger(__name__)
@@ -25,7 +28,6 @@ log = logging.getLogger(__name__)
 SAME_READING_S = 300.0
 MOST_REMEMBERED = 4096
 READING = ("GET", "HEAD")
-CLIENT_ERROR = 400
 
 
 class AuditTrail:
@@ -47,26 +49,26 @@ class AuditTrail:
 
         async def send_after_entry(message: Message) -> None:
             if message["type"] == "http.response.start":
-                entry = self._entry(scope, message["status"])
-                if entry is not None and not self._is_repeated(scope["method"], entry):
-                    await run_in_threadpool(self._append, entry)
+                entries = self._due(scope, message["status"])
+                if entries:
+                    await run_in_threadpool(self._append, entries)
             await send(message)
 
         await self.app(scope, receive, send_after_entry)
 
-    def _entry(self, scope: Scope, status: int) -> Entry | None:
-        route = scope.get("route")
+    def _due(self, scope: Scope, status: int) -> list[Entry]:
+        route, noted = scope.get("route"), noted_in(scope)
         dependant = getattr(route, "dependant", None)
         if route is None or dependant is None:
-            return None
-        permission = rule_of(route.path, dependant)
-        if permission not in ABOUT_PATIENTS and scope["method"] in READING:
-            return None
-        return entry_of(scope, route.name, status, self._clock())
+            return []
+        reading = noted.reading or scope["method"] in READING
+        if reading and noted is NOTHING and rule_of(route.path, dependant) not in ABOUT_PATIENTS:
+            return []
+        entry = entry_of(scope, route.name, status, self._clock())
+        entries = [replace(entry, patient=patient) for patient in noted.patients] or [entry]
+        return [each for each in entries if not (reading and self._is_repeated(each))]
 
-    def _is_repeated(self, method: str, entry: Entry) -> bool:
-        if method not in READING:
-            return False
+    def _is_repeated(self, entry: Entry) -> bool:
         key = (entry.actor, entry.action, entry.patient, entry.session, entry.object, entry.outcome)
         before = self._read.get(key)
         if before is not None and (entry.at - before).total_seconds() < SAME_READING_S:
@@ -77,19 +79,20 @@ class AuditTrail:
             self._read.popitem(last=False)
         return False
 
-    def _append(self, entry: Entry) -> None:
+    def _append(self, entries: list[Entry]) -> None:
         try:
             with self._database.transaction(EVERYTHING) as database:
-                records.append(database, entry)
+                for entry in entries:
+                    records.append(database, entry)
         except SQLAlchemyError:
             # The database that would hold the entry is the one the answer came from: it has just gone away.
-            log.exception("event=not_audited action=%s outcome=%d", entry.action, entry.outcome)
+            log.exception("event=not_audited action=%s outcome=%d", entries[0].action, entries[0].outcome)
 
 
 def entry_of(scope: Scope, action: str, outcome: int, at: datetime) -> Entry:
-    """What is known of a request or socket: who, and which patient or session its address names."""
+    """What is known of a request or socket: who, which patient or session its address names, and what it noted."""
     caller: Caller | None = scope.get("state", {}).get("caller")
-    named = scope.get("path_params", {})
+    named, noted = scope.get("path_params", {}), noted_in(scope)
     others = [f"{name}={value}" for name, value in named.items() if name not in ("code", "session")]
     return Entry(
         at=at,
@@ -99,8 +102,8 @@ def entry_of(scope: Scope, action: str, outcome: int, at: datetime) -> Entry:
         clinic=caller.clinic if caller is not None else None,
         action=action,
         patient=named.get("code"),
-        session=named.get("session"),
-        object=" ".join(others)[:120] or None,
+        session=noted.session or named.get("session"),
+        object=" ".join([*others, *([noted.object] if noted.object else [])])[:120] or None,
         outcome=outcome,
-        reason=scope.get("state", {}).get("reason"),
+        reason=noted.reason,
     )

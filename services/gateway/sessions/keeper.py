@@ -12,6 +12,7 @@ from schemas.kinematics import Calibration
 from schemas.metrics import SessionMetrics
 from schemas.rhythm import LearnedRhythm
 from schemas.session import SessionDescription
+from services.bus.logs import event
 from services.gateway.access.scope import EVERYTHING
 from services.gateway.database import Database
 from services.gateway.live import views
@@ -128,5 +129,5 @@ class SessionKeeper:
         try:
             write()
         except SQLAlchemyError:
-            log.exception("event=not_written session=%s what=%s", *key)
+            log.exception(event("not_written", session=key[0], what=key[1]))
             self._unwritten[key] = write

@@ -10,6 +10,7 @@ from fastapi import APIRouter, Query
 from schemas.metrics import SessionMetrics
 from schemas.session import SessionDescription
 from schemas.vocabulary import Task
+from services.bus.logs import event
 from services.gateway.access.rules import READ, WORK
 from services.gateway.context import Context, Gateway, Limit, Offset, SessionId
 from services.gateway.control import ControlRefused, ControlUnavailable, StartRequest
@@ -211,6 +212,6 @@ def _check_offered(gateway: Gateway, source: str) -> None:
 
 
 def _give_up(gateway: Gateway, session: str, reason: str) -> None:
-    log.info("event=session_not_started session=%s", session)
+    log.info(event("session_not_started", session=session))
     with gateway.transaction() as database:
         records.record_end(database, session, SessionState.FAILED, reason)
