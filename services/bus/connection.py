@@ -5,6 +5,7 @@ import json
 import logging
 import secrets
 import threading
+import time
 import traceback
 from collections.abc import Callable, Iterable, Mapping
 from typing import Any, Self
@@ -22,6 +23,9 @@ CACHED_MESSAGES = 64
 """Per stream, for the substrate's own recovery of short gaps; longer ones are replayed from the ring."""
 HEARTBEAT_S = 0.5
 """After the last message of a burst its number is repeated once, so that a lost last message is noticed."""
+
+PAUSE_S = 0.3
+"""Before a question is asked again."""
 
 logger = logging.getLogger(__name__)
 
@@ -180,6 +184,15 @@ class Bus:
             if reply.ok is not None:
                 answers.append(_received(reply.ok))
         return answers
+
+    def ask_again(self, key: str, body: bytes, timeout_s: float, tries: int) -> list[Received]:
+        """As `ask`, and again when nothing comes back: for orders that mean the same however often they are given."""
+        for left in range(tries - 1, -1, -1):
+            answers = self.ask(key, body=body, timeout_s=timeout_s)
+            if answers or left == 0:
+                return answers
+            time.sleep(PAUSE_S)
+        return []
 
     def ask_later(
         self,

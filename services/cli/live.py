@@ -2,6 +2,7 @@
 
 import json
 import queue
+import secrets
 import time
 from collections import deque
 from collections.abc import Iterator
@@ -19,6 +20,10 @@ from services.ingest.choices import AS_THE_SOURCE_SAYS, Choices
 SILENCE_S = 60.0
 """s. A service that crashed is back well before; a session without any news for so long is not coming to its end."""
 
+START_TIMEOUT_S = 15.0
+"""Opening a long recording takes seconds."""
+START_TRIES = 3
+
 
 class NotStarted(RuntimeError):
     """Ingest refused an order, or no ingest answers."""
@@ -29,11 +34,12 @@ class WentSilent(RuntimeError):
 
 
 def start_session(
-    bus: Bus, spec: str, speed: float | None, choices: Choices = AS_THE_SOURCE_SAYS
+    bus: Bus, spec: str, speed: float | None, choices: Choices = AS_THE_SOURCE_SAYS, session: str | None = None
 ) -> SessionDescription:
     """Ask an ingest to play a source as a live session. `speed` None: as fast as the services follow.
 
-    Raises NotStarted with the reason that ingest gave, or with what to do when no ingest answers.
+    The session has an id from the beginning, so that an order whose answer got lost can be given again. Raises
+    NotStarted with the reason that ingest gave, or with what to do when no ingest answers.
     """
     known = choices.known_rhythms
     order = {
@@ -45,9 +51,10 @@ def start_session(
         "task": choices.task,
         "walkway_m": choices.walkway_m,
         "conditions": None if choices.conditions is None else choices.conditions.model_dump(mode="json"),
-        "session": None,
+        "session": session or secrets.token_hex(8),
     }
-    replies = bus.ask(command_key(bus.settings.site, "ingest", "start"), body=json.dumps(order).encode(), timeout_s=30)
+    key, body = command_key(bus.settings.site, "ingest", "start"), json.dumps(order).encode()
+    replies = bus.ask_again(key, body, START_TIMEOUT_S, START_TRIES)
     if not replies:
         raise NotStarted("no ingest answers; start the services with `ambula up` first")
     answer: dict[str, Any] = json.loads(replies[0].payload)

@@ -10,8 +10,10 @@ from services.bus.connection import RemoteError
 from services.gateway.bus_feed import BusLink
 from services.gateway.control import ControlRefused, ControlUnavailable, Source, StartRequest, Worn
 
-START_TIMEOUT_S = 20.0
+START_TIMEOUT_S = 8.0
 """Opening a long recording takes seconds."""
+START_TRIES = 3
+"""An answer may get lost; the session's id says that it is the same order."""
 TIMEOUT_S = 3.0
 ERASE_TIMEOUT_S = 30.0
 """A file that is being closed is waited for."""
@@ -39,7 +41,7 @@ class BusControl:
             "conditions": None if request.conditions is None else request.conditions.model_dump(mode="json"),
         }
         try:
-            return SessionDescription.model_validate(self._order("start", order, START_TIMEOUT_S))
+            return SessionDescription.model_validate(self._order("start", order, START_TIMEOUT_S, tries=START_TRIES))
         except ValueError as error:
             raise ControlRefused(f"the ingest answered with something else than a session: {error}") from error
 
@@ -63,13 +65,15 @@ class BusControl:
         devices = [Source(each["name"], each["title"], "device", None, "camera") for each in answer.get("devices", [])]
         return devices + [_recording(each) for each in answer.get("recordings", [])]
 
-    def _order(self, command: str, body: dict[str, Any], timeout_s: float, service: str = "ingest") -> dict[str, Any]:
+    def _order(
+        self, command: str, body: dict[str, Any], timeout_s: float, service: str = "ingest", tries: int = 1
+    ) -> dict[str, Any]:
         bus = self._link.bus
         if bus is None:
             raise ControlUnavailable("The gateway has no connection to the router yet.")
         key = command_key(bus.settings.site, service, command)
         try:
-            answers = bus.ask(key, body=json.dumps(body).encode(), timeout_s=timeout_s)
+            answers = bus.ask_again(key, json.dumps(body).encode(), timeout_s, tries)
         except RemoteError as error:
             raise ControlRefused(str(error)) from error
         if not answers:

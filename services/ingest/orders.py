@@ -34,7 +34,7 @@ class StartOrder(Order):
     task: Task | None = None
     walkway_m: float | None = Field(default=None, description="m from start to turning point of a timed test")
     conditions: Conditions | None = Field(default=None, description="null: as the source says")
-    session: str | None = None
+    session: str | None = Field(default=None, description="id; the same order again is answered as the first time")
     ticks: Annotated[int, Field(ge=1, le=5)] = 1
 
     @property

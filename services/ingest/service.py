@@ -28,6 +28,7 @@ from services.ingest.orders import InvalidOrder, MarkOrder, StartOrder, StopOrde
 from services.ingest.parameters import PARAMETERS, IngestParameters
 from services.ingest.playback import Playback
 from services.ingest.source import known_recordings, open_chosen
+from services.ingest.starts import Starts
 
 SERVICE = "ingest"
 SAMPLE_READERS = ("estimation", "archive")
@@ -68,6 +69,7 @@ class IngestService:
         self._loop = EventLoop(bus, stop=stop)
         self._threads = ThreadPoolExecutor(READING_THREADS, thread_name_prefix="reading")
         self._descriptions: dict[str, SessionDescription] = {}
+        self._starts = Starts()
         self._lock = threading.Lock()
         self._running: dict[str, Playback] = {}
         self._running_services: dict[str, set[str]] = {service: set() for service in SAMPLE_READERS}
@@ -126,6 +128,9 @@ class IngestService:
 
     def _start(self, body: bytes) -> bytes:
         order = parse_order(StartOrder, body)
+        return self._starts.once(order, lambda: self._begin(order)).model_dump_json().encode()
+
+    def _begin(self, order: StartOrder) -> SessionDescription:
         if order.session in self._descriptions:
             raise InvalidOrder(f"session {order.session} runs already; stop it or choose another id")
         source = open_chosen(order.source, order.choices, session=order.session, ports=self._ports)
@@ -139,7 +144,7 @@ class IngestService:
                 source.close()
             raise InvalidOrder(f"session {description.session} was started by another order just now")
         self._loop.post(lambda: self._play(source, description, order))
-        return description.model_dump_json().encode()
+        return description
 
     def _play(self, source: Source, description: SessionDescription, order: StartOrder) -> None:
         now_s = time.monotonic()

@@ -17,6 +17,9 @@ from services.bus.settings import BusSettings
 from services.cli import live
 from services.flow.message import encode_payload
 from services.flow.raw_streams import raw_streams
+from services.gateway.bus_control import BusControl
+from services.gateway.bus_feed import BusLink
+from services.gateway.control import StartRequest
 from services.ingest.parameters import IngestParameters
 from services.ingest.service import IngestService
 from services.ingest.source import iter_messages, open_source
@@ -224,6 +227,55 @@ def test_a_bad_order_is_answered_and_forgotten(stage, command, body, word):
 def test_a_session_cannot_run_twice(stage):
     stage.start("synthetic:walk?duration=60", speed=1.0)
     assert "runs already" in stage.start(speed=1.0)["error"]
+
+
+class Lossy:
+    """A connection on which the first answers get lost: what was asked for is done, but nobody hears so."""
+
+    def __init__(self, bus, losses):
+        self.bus, self.settings, self.losses, self.asked = bus, bus.settings, losses, []
+
+    def ask(self, key, parameters=None, body=b"", timeout_s=2.0):
+        answers = self.bus.ask(key, parameters, body, timeout_s)
+        assert answers
+        self.asked.append(body)
+        return answers if len(self.asked) > self.losses else []
+
+    ask_again = Bus.ask_again
+
+
+def test_a_start_whose_answer_got_lost_is_asked_for_again_and_runs_once(stage):
+    """From the command line and from the gateway; the second order is the first one, word by word."""
+    walk = "synthetic:walk?duration=600"
+    lossy = Lossy(stage.bus, losses=1)
+    description = live.start_session(lossy, walk, 1.0, session="s1")
+    assert lossy.asked[0] == lossy.asked[1]
+    wish = StartRequest("s2", walk, 1.0, *[None] * 6)
+    asked = Lossy(stage.bus, losses=2)
+    assert BusControl(BusLink(asked)).start(wish).session == "s2"
+    assert len(asked.asked) == 3
+    wait_until(lambda: len(stage.service._running) == 2)
+    described = stage.bus.ask(description_key(SITE, "s1"))
+    assert [SessionDescription.model_validate_json(each.payload) for each in described] == [description]
+
+
+def test_a_quick_session_that_is_over_is_not_played_again(stage):
+    first = stage.start()
+    wait_until(lambda: stage.ends("s1") == 2)
+    last = {name: envelope.sequence for name, envelope, _ in stage.of("s1") if envelope.final}
+    done = Progress(service="archive", captured_ns=0, positions=last, ended=True)
+    stage.bus.put(progress_key(SITE, "s1", "archive"), done.model_dump_json().encode())
+    wait_until(lambda: not stage.service._running)
+    assert stage.order("start", {"source": WALK, "speed": None, "session": "s1"}) == first
+    assert not stage.service._running
+    assert "choose another id" in stage.order("start", {"source": WALK, "speed": 2.0, "session": "s1"})["error"]
+
+
+def test_an_order_that_never_gets_an_answer_is_given_up(stage):
+    lossy = Lossy(stage.bus, losses=99)
+    with pytest.raises(live.NotStarted, match="ambula up"):
+        live.start_session(lossy, "synthetic:walk?duration=600", 1.0)
+    assert len(lossy.asked) == live.START_TRIES
 
 
 def test_a_source_that_fails_midway_ends_and_leaves_the_others_alone(stage, monkeypatch):
