@@ -131,3 +131,6 @@ class LivePose(Payload):
     )
     cameras: list[CameraStatus]
     cadence_per_min: float | None = Field(description="steps per minute while the rhythm is locked")
+    stood: float | None = Field(
+        ge=0, le=1, description="share of the standing still that is needed, so far; null where none is waited for"
+    )

@@ -124,6 +124,17 @@ class StandingDetector:
         self._block, self._held, self._span = (Sums.zero(len(self.sensors)) for _ in range(3))
         self._held_until_ns = 0
 
+    @property
+    def stood(self) -> float:
+        """Share of the shortest standing that the present one has come to, 0 to 1; 1 once one was long enough."""
+        if self.reference is not None:
+            return 1.0
+        if self._span_start_ns is None:
+            return 0.0
+        since_s = (self._newest_ns - self._span_start_ns) / 1e9
+        # A block counts once another still one has followed.
+        return min(1.0, since_s / (self.parameters.shortest_s + 2 * self.parameters.block_s))
+
     def decide(self, reference: StandingReference) -> None:
         """The operator has marked a standing."""
         self.reference, self.is_decided, self.is_sitting = reference, True, False

@@ -64,7 +64,7 @@ def _pose(captured_ns: int) -> LivePose:
         captured_ns=captured_ns, phase="estimating", message="", notice="", segments=[], angles={}, angles_std={},
         centres={},
         cameras=[],
-        sensors=[], cadence_per_min=None,
+        sensors=[], cadence_per_min=None, stood=None,
     )  # fmt: skip
 
 

@@ -13,12 +13,13 @@ from schemas.session import SessionDescription
 from schemas.signals import CALIBRATION, LEARNED_RHYTHM, LIVE_POSE, SEGMENT_MOTION
 from schemas.standing import StandingMark
 from schemas.vocabulary import Segment
+from services.biomech.bones import SEGMENTS
 from services.biomech.event_sources import lone_segments, worn_segments
-from services.biomech.lower_body import SEGMENTS
+from services.biomech.figure import Pace, segment_pictures
 from services.estimation.estimates import OUTPUTS, estimates
 from services.estimation.intake import Intake, used_by_lower_body
 from services.estimation.learning import RhythmLearning, start_rhythm
-from services.estimation.live_pose import Pace, estimated_pose, segment_pictures, waiting_pose
+from services.estimation.live_pose import estimated_pose, waiting_pose
 from services.estimation.lower_body.calibration_message import calibration_message
 from services.estimation.lower_body.calibrator import Calibrator, pack_calibrated, unpack_calibrated
 from services.estimation.lower_body.lower_body_filter import Calibrated, LowerBodyFilter
@@ -144,7 +145,8 @@ class LowerBodyNode:
         everyone = np.ones(len(sensors), dtype=np.bool_)
         statuses = sensor_statuses(sensors, checks, now_ns, self._calibrator.refused, everyone)
         statuses += unused_statuses(self._intake.unused)
-        pose = waiting_pose(now_ns, phase, self._calibrator.message(), self._marks.notice_at(now_ns), statuses)
+        message, stood = self._calibrator.message(), self._calibrator.standing.stood
+        pose = waiting_pose(now_ns, phase, message, self._marks.notice_at(now_ns), statuses, stood=stood)
         return [Output(LIVE_POSE, now_ns, pose)]
 
     def _start(self, calibrated: Calibrated) -> list[Output]:
@@ -237,7 +239,8 @@ class LowerBodyNode:
         statuses = sensor_statuses(self._intake.sensors, self._intake.checks, row.captured_ns, refused, waiting)
         statuses += unused_statuses(self._intake.unused)
         notice = self._marks.notice_at(row.captured_ns)
-        bones = segment_pictures(running.model, running.ekf.estimate[0], SEGMENTS, running.unseen)
+        body = self._description.anthropometry
+        bones = segment_pictures(body, row.position, SEGMENTS, running.observed)
         pose = estimated_pose(row, bones, running.valid, sensor_troubles(statuses), notice, statuses)
         return [Output(LIVE_POSE, row.captured_ns, pose)]
 

@@ -84,6 +84,7 @@ def pose_view(poses: list[LivePose], age_s: float) -> View:
         "centres": {centre.value: _rounded(position) for centre, position in pose.centres.items()},
         "cameras": camera_views(pose),
         "cadence_per_min": pose.cadence_per_min,
+        "stood": None if pose.stood is None else round(pose.stood, 2),
     }
 
 

@@ -48,6 +48,21 @@ def test_too_short_is_no_standing() -> None:
     assert feed(StandingDetector(SENSORS), standing(1.0)).reference is None
 
 
+def test_the_share_of_standing_grows_until_there_is_one_and_falls_to_nothing_in_a_movement() -> None:
+    detector = StandingDetector(SENSORS)
+    shares = []
+    for tick in ticks(standing(2.0)):
+        detector.add(tick)
+        shares.append(detector.stood)
+        assert (detector.reference is not None) == (detector.stood == 1.0) or detector.stood > 0.9
+    assert shares == sorted(shares)
+    assert shares[0] == 0.0
+    assert shares[-1] == 1.0
+    interrupted = feed(StandingDetector(SENSORS), standing(0.8))
+    assert 0.3 < interrupted.stood < 1.0
+    assert feed(interrupted, walks.walk()[1][300:400], first=80).stood == 0.0
+
+
 def test_walking_is_no_standing() -> None:
     detector = feed(StandingDetector(SENSORS), walks.walk()[1][300:])
     assert detector.reference is None

@@ -80,6 +80,7 @@ def pose_at(at_s: float, lost: str | None = None, phase: str = "estimating", mes
         captured_ns=round(at_s * 1e9), phase=phase, message=message, notice="", segments=segments, angles=angles,
         angles_std=stds, sensors=sensors, centres={}, cameras=[],
         cadence_per_min=109.0 if phase == "estimating" else None,
+        stood=None if phase == "estimating" else 0.5,
     )  # fmt: skip
 
 
