@@ -105,9 +105,8 @@ def text(page: Chrome, selector: str) -> str:
 def choose_source(page: Chrome, kind: str) -> None:
     """The button, then a source."""
     page.find_element(By.ID, "start").click()
-    source = page.find_element(By.ID, "source")
-    wait(page, lambda: kind in source.text, "the sources are offered")
-    Select(source).select_by_visible_text(kind)
+    wait(page, lambda: kind in text(page, "#source"), "the sources are offered")
+    Select(page.find_element(By.ID, "source")).select_by_visible_text(kind)
 
 
 def confirm(page: Chrome) -> None:

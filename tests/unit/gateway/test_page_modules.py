@@ -10,8 +10,17 @@ import pytest
 from services.gateway.settings import DIST
 
 HERE = Path(__file__).parent
-STYLE = DIST.parents[1] / "web" / "src" / "style.css"
+STYLES = DIST.parents[1] / "web" / "src" / "styles"
 PALETTE = DIST.parents[1] / "web" / "src" / "palette.js"
+
+
+def read_styles():
+    return "\n".join(file.read_text() for file in sorted(STYLES.glob("*.css")))
+
+
+def test_every_style_is_in_the_one_list():
+    listed = re.findall(r'"\./styles/([^"]+)"', STYLES.with_name("style.css").read_text())
+    assert sorted(listed) == sorted(file.name for file in STYLES.glob("*.css"))
 
 
 @pytest.mark.skipif(shutil.which("node") is None, reason="node is not installed")
@@ -51,12 +60,12 @@ PAIRS = [
 
 @pytest.mark.parametrize(("text", "ground"), PAIRS)
 def test_text_can_be_read(text, ground):
-    colours = dict(re.findall(r"--([a-z-]+): (#[0-9a-f]{6});", STYLE.read_text()))
+    colours = dict(re.findall(r"--([a-z-]+): (#[0-9a-f]{6});", read_styles()))
     assert contrast(colours[text], colours[ground]) >= 4.5
 
 
 def test_grey_numbers_can_still_be_read():
-    [grey] = re.findall(r"color: (#[0-9a-f]{6}) !important", STYLE.read_text())
+    [grey] = re.findall(r"color: (#[0-9a-f]{6}) !important", read_styles())
     assert contrast(grey, "#ffffff") >= 4.5
 
 

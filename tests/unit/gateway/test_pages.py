@@ -1,9 +1,13 @@
+import gzip
 import json
 import re
 from http import HTTPStatus
 
 import pytest
+from fastapi import FastAPI
+from fastapi.testclient import TestClient
 
+from services.gateway.pages import install
 from services.gateway.settings import DIST
 
 built = pytest.mark.skipif(not (DIST / "index.html").exists(), reason="the pages are not built: run `make web`")
@@ -31,11 +35,16 @@ def test_assets_stay_in_their_folder(client, path):
 @built
 def test_built_pages_point_to_nothing_outside():
     namespaces = re.compile(r"http://www\.w3\.org/(1999/xhtml|2000/svg|1999/xlink)")
-    for name in ("index.html", "docs.html", "style.css", "docs.js", "favicon.svg", "main.js"):
-        text = namespaces.sub("", (DIST / name).read_text())
+    files = [*DIST.glob("*.html"), *DIST.glob("favicon.svg"), *DIST.glob("*-*.css"), *DIST.glob("*-????????.js")]
+    chunks = list(DIST.glob("chunks/*.js"))
+    assert len(files) >= 7
+    assert len(chunks) >= 5
+    for file in (*files, *chunks):
+        name = file.name
+        text = namespaces.sub("", file.read_text())
         # Messages of the drawing library may name its manual; nothing may be loaded from anywhere.
         assert not re.search(r"""(src|href|url|import|fetch|WebSocket|@import)\s*[=(]?\s*["'(]\s*https?:""", text), name
-        if name != "main.js":
+        if file in files:
             assert "http" not in text, name
 
 
@@ -44,6 +53,29 @@ def test_every_asset_that_a_page_names_exists():
     for page in ("index.html", "docs.html"):
         for name in re.findall(r'"/static/([^"]+)"', (DIST / page).read_text()):
             assert (DIST / name).exists(), name
+
+
+@built
+def test_what_is_named_by_its_content_is_kept_and_the_rest_is_asked_for_again():
+    names = json.loads((DIST / "names.json").read_text())
+    chunk = next(DIST.glob("chunks/*.js")).relative_to(DIST)
+    app = FastAPI(docs_url=None)
+    install(app, DIST)
+    client = TestClient(app)
+    for name in (names["main.js"], names["style.css"], chunk):
+        answer = client.get(f"/static/{name}")
+        assert "immutable" in answer.headers["Cache-Control"], name
+    for path in ("/", "/docs", "/static/favicon.svg", "/static/swagger-ui.css"):
+        assert client.get(path).headers["Cache-Control"] == "no-cache", path
+    assert client.get(f"/static/{names['style.css']}").headers["Content-Encoding"] == "gzip"
+
+
+@built
+def test_first_load_is_small():
+    page = (DIST / "index.html").read_text()
+    asked = [DIST / name for name in re.findall(r'"/static/([^"]+)"', page)]
+    assert len(asked) >= 4
+    assert sum(len(gzip.compress(file.read_bytes())) for file in asked) < 60_000
 
 
 @built

@@ -1,11 +1,11 @@
 // What can be taken away: the recording as it is, and the same in the formats of other programs.
-import { get } from "./api.js";
+import { get, linkTo } from "./api.js";
 import { el, fill } from "./dom.js";
 import { bytes } from "./units.js";
 
 export class FilesPanel {
   constructor(session) {
-    this.path = `/sessions/${session.id}`;
+    this.id = session.id;
     this.files = el("ul", { class: "files" });
     this.exports = el("ul", { class: "files exports" });
     this.node = el(
@@ -23,8 +23,8 @@ export class FilesPanel {
 
   async load() {
     const [files, exported] = await Promise.all([
-      get(`${this.path}/recordings`).catch(() => []),
-      get(`${this.path}/exports`).catch((problem) => problem),
+      get("/sessions/{session}/recordings", { session: this.id }).catch(() => []),
+      get("/sessions/{session}/exports", { session: this.id }).catch((problem) => problem),
     ]);
     this.showRecordings(files);
     this.showExports(exported);
@@ -33,7 +33,7 @@ export class FilesPanel {
   showRecordings(files) {
     const lines = files.map(({ name, size_bytes, kind, complete }) => {
       const words = `${bytes(size_bytes)}, ${kind === "raw" ? "sensors" : "computed"}${complete ? "" : ", still open"}`;
-      const href = `/v1${this.path}/recordings/${encodeURIComponent(name)}`;
+      const href = linkTo("/sessions/{session}/recordings/{name}", { session: this.id, name });
       return el("li", {}, el("a", { href, download: true }, name), el("span", { class: "quiet" }, words));
     });
     const none = el("li", { class: "quiet" }, "No files. The archive may not have been running.");
@@ -47,11 +47,11 @@ export class FilesPanel {
     }
     const { had, not } = possible(exported.items);
     const links = had.map(({ format, file_name, about }) => {
-      const href = `/v1${this.path}/exports/${encodeURIComponent(format)}`;
+      const href = linkTo("/sessions/{session}/exports/{name}", { session: this.id, name: format });
       return el("li", {}, el("a", { href, download: file_name }, format), el("span", { class: "quiet" }, about));
     });
     const missing = not.map(([reason, formats]) => el("li", { class: "quiet" }, `${formats.join(", ")}: ${reason}.`));
-    const fhir = el("a", { href: `/v1${this.path}/fhir`, download: true }, "fhir");
+    const fhir = el("a", { href: linkTo("/sessions/{session}/fhir", { session: this.id }), download: true }, "fhir");
     const about = "Bundle for a clinical information system (HL7 FHIR R4): every number, the report, how it was measured.";
     fill(this.exports, ...links, el("li", {}, fhir, el("span", { class: "quiet" }, about)), ...missing);
   }

@@ -9,6 +9,9 @@ import { PHASES, STALE_S, STORED_WORDS, byTrouble, lastData, misplacedText, nobo
 const PAGE = 20;
 const COLUMNS = ["Session", "Patient", "Started", "Length#", "Strides#", "Speed#", "Cadence#", "State"];
 
+/** @param {import("./pages.js").Place} place */
+export const open = ({ host, app }) => new FloorView(host, { startSession: () => app.startSession() });
+
 export class FloorView {
   constructor(host, { startSession }) {
     this.cards = new Map();
@@ -58,8 +61,8 @@ export class FloorView {
   }
 
   async refresh() {
-    const filter = this.filter.value ? `&state=${this.filter.value}` : "";
-    const page = await get(`/sessions?limit=${PAGE}&offset=${this.offset}${filter}`).catch(() => null);
+    const state = /** @type {any} */ (this.filter.value || null);
+    const page = await get("/sessions", { limit: PAGE, offset: this.offset, state }).catch(() => null);
     if (!page) return;
     say(this.total, `${page.total} in all`);
     this.newer.disabled = this.offset === 0;

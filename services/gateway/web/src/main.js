@@ -1,62 +1,44 @@
-// Which page is shown, and the line to the gateway.
-import { el, fill, say } from "./dom.js";
-import { FloorView } from "./floor_view.js";
+// @ts-check
+// The beginning: who has signed in, which page is shown, and the line to the gateway.
+import { get } from "./api.js";
 import { LiveSocket } from "./live_socket.js";
-import { PatientView } from "./patient_view.js";
-import { PatientsView } from "./patients_view.js";
-import { SessionView } from "./session_view.js";
-import { StartDialog } from "./start_dialog.js";
-import { SystemView } from "./system_view.js";
+import { Router } from "./router.js";
+import { Shell } from "./shell.js";
 import { connectionOf } from "./words.js";
 
-const content = document.getElementById("content");
-const connection = document.getElementById("connection");
-
-let view = null;
+/** @type {any} */
 let floor = null;
-let floorStatus = null;
+/** @type {import("./pages.js").App} */
+let app;
 
-const dialog = new StartDialog({ onStarted: (session) => (location.hash = `#/sessions/${session.id}`) });
-document.getElementById("start").addEventListener("click", () => dialog.open());
+const shell = new Shell({ start: () => startSession() });
+const router = new Router(shell.content, (page) => shell.mark(page));
 
-function showConnection(open, status) {
-  const { word, tone } = connectionOf(open, status);
-  say(connection, word);
-  connection.dataset.tone = tone;
+/** @param {string} [patient] */
+async function startSession(patient) {
+  const { StartDialog } = await import("./start_dialog.js");
+  const dialog = new StartDialog({ onStarted: (session) => (location.hash = `#/sessions/${session.id}`) });
+  dialog.node.addEventListener("close", () => dialog.node.remove());
+  dialog.open(patient);
 }
 
-function route() {
-  const [, page = "", id = ""] = location.hash.split("/");
-  view?.dispose();
-  floor = null;
-  const host = el("div", { class: `page ${page || "floor"}` });
-  fill(content, host);
-  if (page === "sessions" && /^[A-Za-z0-9_-]+$/.test(id)) view = new SessionView(host, id);
-  else if (page === "patients" && /^[A-Z0-9]+$/.test(id))
-    view = new PatientView(host, id, { startSession: (code) => dialog.open(code) });
-  else if (page === "patients") view = new PatientsView(host);
-  else if (page === "system") view = new SystemView(host);
-  else {
-    floor = view = new FloorView(host, { startSession: () => dialog.open() });
-    if (floorStatus) floor.onFloor(floorStatus);
-  }
-  for (const link of document.querySelectorAll("nav a")) {
-    link.toggleAttribute("aria-current", link.dataset.page === (page === "" || page === "sessions" ? "floor" : page));
-  }
+async function show(moved = true) {
+  await router.open(app, moved);
+  if (floor) router.view?.onFloor?.(floor);
 }
 
+const me = await get("/me");
+app = { me, setTitle: (name) => router.setTitle(name), startSession, signedIn: () => {} };
+shell.offer(me);
 new LiveSocket("", {
   onMessage(status) {
-    floorStatus = status;
-    showConnection(true, status);
-    floor?.onFloor(status);
+    floor = status;
+    shell.showConnection(connectionOf(true, status));
+    router.view?.onFloor?.(status);
   },
-  onState(open) {
-    showConnection(open, floorStatus);
-  },
+  onState: (open) => shell.showConnection(connectionOf(open, floor)),
 });
-setInterval(() => floor?.tick(), 200);
-
-window.addEventListener("hashchange", route);
-showConnection(true, null);
-route();
+setInterval(() => router.view?.tick?.(), 200);
+window.addEventListener("hashchange", () => show());
+shell.showConnection(connectionOf(true, null));
+show(false);

@@ -13,7 +13,12 @@ import { SIDES } from "./vectors.js";
 import { TASKS, jointName } from "./words.js";
 
 const FIRST_CURVES = ["hip_flexion", "knee_flexion"];
-const PARTS = ["metrics", "curves", "phases", "repetitions"];
+const PARTS = /** @type {const} */ ([
+  "/sessions/{session}/metrics",
+  "/sessions/{session}/curves",
+  "/sessions/{session}/phases",
+  "/sessions/{session}/repetitions",
+]);
 
 export class MeasuredView {
   constructor(session) {
@@ -27,10 +32,10 @@ export class MeasuredView {
   }
 
   async load() {
-    const path = `/sessions/${this.session.id}`;
-    const answers = await Promise.all(PARTS.map((part) => get(`${path}/${part}`).catch(() => null)));
+    const session = this.session.id;
+    const answers = await Promise.all(PARTS.map((part) => get(part, { session }).catch(() => null)));
     if (this.disposed) return;
-    const [metrics, curves, phases, repetitions] = answers;
+    const [metrics, curves, phases, repetitions] = /** @type {any[]} */ (answers);
     const all = metrics?.metrics ?? [];
     this.showPhases(phases?.phases ?? [], all);
     this.showRepetitions(repetitions?.repetitions ?? [], all);

@@ -39,7 +39,7 @@ export class PatientFacts {
     const { value } = this.inputs[name];
     const told = value === NOT_SAID ? null : name === "year_of_birth" ? Number(value) : value;
     try {
-      await patch(`/patients/${this.code}`, { [name]: told });
+      await patch("/patients/{code}", { code: this.code, body: { [name]: told } });
       say(this.told, "Kept.");
       this.onChange();
     } catch (problem) {

@@ -15,7 +15,7 @@ export class PatientLink {
   }
 
   async load() {
-    const page = await get("/patients?limit=100").catch(() => null);
+    const page = await get("/patients", { limit: 100 }).catch(() => null);
     if (!page) return;
     const codes = page.items.map((patient) => patient.code);
     if (codes.join() === this.codes.join()) return;
@@ -38,8 +38,8 @@ export class PatientLink {
   async choose() {
     let code = this.select.value || null;
     try {
-      if (code === NEW) code = (await post("/patients", {})).code;
-      await patch(`/sessions/${this.session.id}`, { patient: code });
+      if (code === NEW) code = (await post("/patients", { body: {} })).code;
+      await patch("/sessions/{session}", { session: this.session.id, body: { patient: code } });
       this.show(code);
     } catch (problem) {
       this.show(this.current);

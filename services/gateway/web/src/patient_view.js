@@ -8,6 +8,10 @@ import { treatmentMarks } from "./progress_series.js";
 import { TreatmentsPanel } from "./treatments_panel.js";
 import { VisitsPanel } from "./visits_panel.js";
 
+/** @param {import("./pages.js").Place} place */
+export const open = ({ host, params, app }) =>
+  new PatientView(host, params.patient, { startSession: (code) => app.startSession(code) });
+
 export class PatientView {
   constructor(host, code, { startSession }) {
     this.host = host;
@@ -24,7 +28,7 @@ export class PatientView {
 
   async open(changed) {
     try {
-      const patient = await get(`/patients/${this.code}`);
+      const patient = await get("/patients/{code}", { code: this.code });
       if (this.disposed) return;
       fill(
         this.host,
@@ -62,9 +66,9 @@ export class PatientView {
 
   /** Progress first: asking for it freezes a baseline where none was. */
   async read() {
-    const progress = await get(`/patients/${this.code}/progress`);
+    const progress = await get("/patients/{code}/progress", { code: this.code });
     const [page, treatments] = await Promise.all([
-      get(`/patients/${this.code}/visits?limit=100`),
+      get("/patients/{code}/visits", { code: this.code, limit: 100 }),
       this.treatments.load(),
     ]);
     if (this.disposed) return;

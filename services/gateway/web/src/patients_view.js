@@ -6,6 +6,9 @@ import { when } from "./units.js";
 
 const PAGE = 50;
 
+/** @param {import("./pages.js").Place} place */
+export const open = ({ host }) => new PatientsView(host);
+
 export class PatientsView {
   constructor(host) {
     this.rows = el("tbody");
@@ -45,7 +48,7 @@ export class PatientsView {
 
   async load() {
     await this.attempt(async () => {
-      const page = await get(`/patients?limit=${PAGE}&offset=${this.offset}`);
+      const page = await get("/patients", { limit: PAGE, offset: this.offset });
       this.count = page.total;
       say(this.total, `${page.total} in all`);
       fill(
@@ -70,7 +73,7 @@ export class PatientsView {
   }
 
   async add() {
-    await this.attempt(async () => (location.hash = `#/patients/${(await post("/patients", {})).code}`));
+    await this.attempt(async () => (location.hash = `#/patients/${(await post("/patients", { body: {} })).code}`));
   }
 
   async attempt(action) {

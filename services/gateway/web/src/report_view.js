@@ -1,5 +1,5 @@
 // A session that is over: its report in two reading levels and two languages, and what it rests on.
-import { get } from "./api.js";
+import { get, linkTo } from "./api.js";
 import { NEVER_CALIBRATED } from "./camera_words.js";
 import { Choices } from "./choices.js";
 import { conditionWords } from "./condition_words.js";
@@ -73,7 +73,7 @@ export class ReportView {
     const words = REPORT_WORDS[language];
     this.levels.reword(words.reading_level, this.levelsIn(language));
     this.languages.reword(words.languages, LANGUAGES);
-    this.pdf.href = `/v1${this.path}.pdf?${query(language, level)}`;
+    this.pdf.href = linkTo("/sessions/{session}/report.pdf", { session: this.session.id, ...wishOf(language, level) });
     this.pdf.textContent = words.pdf;
     this.measured.node.hidden = level !== MEASURED;
     this.sheet.hidden = level === MEASURED;
@@ -84,9 +84,10 @@ export class ReportView {
   }
 
   async sheetOf(language, level) {
-    const asked = query(language, level);
+    const wish = wishOf(language, level);
+    const asked = JSON.stringify(wish);
     try {
-      this.reports[asked] ??= await get(`${this.path}?${asked}`);
+      this.reports[asked] ??= await get("/sessions/{session}/report", { session: this.session.id, ...wish });
       const report = this.reports[asked];
       const has = report.sections.some((section) => String(section.page) === level);
       return has ? reportDocument(report, Number(level)) : el("p", { class: "panel" }, REPORT_WORDS[language].nothing);
@@ -100,17 +101,13 @@ export class ReportView {
     return WALKS.includes(this.session.task) ? REPORT_WORDS[language].levels : others;
   }
 
-  get path() {
-    return `/sessions/${this.session.id}/report`;
-  }
-
   dispose() {
     this.disposed = true;
     this.measured.dispose();
   }
 }
 
-const query = (language, level) => `language=${language}${level === ALL_STRIDES ? "&strides=true" : ""}`;
+const wishOf = (language, level) => ({ language, strides: level === ALL_STRIDES ? true : null });
 
 function taskWords({ task, walkway_m }) {
   return walkway_m ? `${TASKS[task]}, ${number(walkway_m, 1)} m` : TASKS[task];

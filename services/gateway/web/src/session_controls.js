@@ -29,7 +29,7 @@ export class SessionControls {
     this.markButton.disabled = true;
     try {
       const wish = { last_s: Number(this.length.value), at_s: this.newest() ?? null };
-      await post(`/sessions/${this.session.id}/marks`, wish);
+      await post("/sessions/{session}/marks", { session: this.session.id, body: wish });
     } catch (problem) {
       this.onTrouble(problem.message);
     } finally {
@@ -40,7 +40,7 @@ export class SessionControls {
   async stop() {
     this.stopButton.disabled = true;
     try {
-      await post(`/sessions/${this.session.id}/stop`);
+      await post("/sessions/{session}/stop", { session: this.session.id });
       say(this.stopButton, "Stopping …");
     } catch (problem) {
       this.stopButton.disabled = false;

@@ -6,6 +6,9 @@ import { ReportView } from "./report_view.js";
 
 const ASK_AGAIN_MS = 500;
 
+/** @param {import("./pages.js").Place} place */
+export const open = ({ host, params }) => new SessionView(host, params.session);
+
 export class SessionView {
   constructor(host, id) {
     this.host = host;
@@ -16,7 +19,7 @@ export class SessionView {
   async load() {
     clearTimeout(this.timer);
     try {
-      const session = await get(`/sessions/${this.id}`);
+      const session = await get("/sessions/{session}", { session: this.id });
       if (!this.disposed) this.show(session);
     } catch (problem) {
       if (this.disposed) return;

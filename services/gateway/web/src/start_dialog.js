@@ -78,7 +78,7 @@ export class StartDialog {
     this.complain("");
     this.node.showModal();
     try {
-      const [offer, patients] = await Promise.all([get("/sources"), get("/patients?limit=100")]);
+      const [offer, patients] = await Promise.all([get("/sources"), get("/patients", { limit: 100 })]);
       this.offer(offer, patients.items, patient);
       if (!offer.ready)
         this.complain("No ingest service answers just now. Start the services with “ambula up”, then try again.");
@@ -148,14 +148,16 @@ export class StartDialog {
     this.go.disabled = true;
     try {
       const session = await post("/sessions", {
-        source: this.source.value,
-        speed: this.speedField.hidden ? 1 : this.speed.value === "max" ? null : Number(this.speed.value),
-        estimator: this.estimator.value || null,
-        walk_path: this.pathField.hidden ? null : this.path.value || null,
-        task: this.task.value || null,
-        walkway_m: this.how.walkway_m,
-        conditions: this.how.conditions,
-        patient: this.patient.value || null,
+        body: {
+          source: this.source.value,
+          speed: this.speedField.hidden ? 1 : this.speed.value === "max" ? null : Number(this.speed.value),
+          estimator: this.estimator.value || null,
+          walk_path: this.pathField.hidden ? null : this.path.value || null,
+          task: this.task.value || null,
+          walkway_m: this.how.walkway_m,
+          conditions: this.how.conditions,
+          patient: this.patient.value || null,
+        },
       });
       this.node.close();
       this.onStarted(session);

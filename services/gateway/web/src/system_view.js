@@ -15,6 +15,9 @@ const STREAM_COLUMNS = [
 ];
 const REFUSED_COLUMNS = ["Service", "Session", "From", "Reason", "Count#"];
 
+/** @param {import("./pages.js").Place} place */
+export const open = ({ host }) => new SystemView(host);
+
 export class SystemView {
   constructor(host) {
     this.rows = el("tbody");

@@ -6,7 +6,7 @@ import { TREATMENTS } from "./rule_words.js";
 
 export class TreatmentsPanel {
   constructor(code, { onChange }) {
-    this.path = `/patients/${code}/treatments`;
+    this.code = code;
     this.onChange = onChange;
     this.list = el("ul", { class: "files" });
     this.date = el("input", { id: "treated-on", type: "date", required: true });
@@ -34,7 +34,7 @@ export class TreatmentsPanel {
   }
 
   load() {
-    return get(`${this.path}?limit=100`).then((page) => page.items);
+    return get("/patients/{code}/treatments", { code: this.code, limit: 100 }).then((page) => page.items);
   }
 
   /** @param {{id: number, date: string, kind: string, letter: string}[]} treatments in order */
@@ -52,7 +52,7 @@ export class TreatmentsPanel {
             class: "quiet-button",
             type: "button",
             "aria-label": `Remove ${TREATMENTS[kind]} of ${date}`,
-            onclick: () => this.attempt(() => remove(`${this.path}/${id}`)),
+            onclick: () => this.attempt(() => remove("/patients/{code}/treatments/{number}", { code: this.code, number: id })),
           },
           "Remove",
         ),
@@ -63,7 +63,7 @@ export class TreatmentsPanel {
 
   add(event) {
     event.preventDefault();
-    return this.attempt(() => post(this.path, { date: this.date.value, kind: this.kind.value }));
+    return this.attempt(() => post("/patients/{code}/treatments", { code: this.code, body: { date: this.date.value, kind: this.kind.value } }));
   }
 
   async attempt(action) {

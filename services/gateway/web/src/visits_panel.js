@@ -59,7 +59,7 @@ export class VisitsPanel {
 
   async choose(session) {
     try {
-      await put(`/patients/${this.code}/baseline`, { session });
+      await put("/patients/{code}/baseline", { code: this.code, body: { session } });
       say(this.told, "Thresholds are chosen by the speed at this visit and stay so.");
       this.onChange();
     } catch (problem) {

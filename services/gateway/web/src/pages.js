@@ -1,0 +1,118 @@
+// Every page: where it is, who may see it, and what is loaded for it. A page that is not in this table does not exist.
+
+/**
+ * What a page is given, and what it gives back.
+ * @typedef {object} Place
+ * @property {HTMLElement} host what it fills
+ * @property {Record<string, string>} params the parts of the address that its pattern names
+ * @property {App} app
+ *
+ * @typedef {object} View
+ * @property {() => void} dispose called when another page is opened
+ * @property {(status: any) => void} [onFloor] called with the newest list of running sessions
+ * @property {() => void} [tick] called five times a second
+ *
+ * @typedef {object} App
+ * @property {Me} me who has signed in; `me.may` lists what they may do
+ * @property {(name: string) => void} setTitle a better title for the document than the one in the table
+ * @property {(patient?: string) => void} startSession
+ * @property {(me: Me) => void} signedIn
+ *
+ * @typedef {import("./api_schema").components["schemas"]["MeOut"]} Me
+ * @typedef {Me["may"][number]} Permission
+ *
+ * @typedef {object} Page
+ * @property {string} name also the class of the element that the page fills
+ * @property {string} pattern of the address behind `#/`; `:word` stands for a part of it
+ * @property {string} title of the document
+ * @property {Permission | null} permission without which it is not offered; null where nobody has signed in
+ * @property {string} [nav] its word among the pages that are always one press away
+ * @property {string} [under] the page in the navigation that it belongs to
+ * @property {boolean} [bare] nothing around it: no navigation, no footer
+ * @property {() => Promise<{ open: (place: Place) => View }>} load
+ */
+
+/** @type {Page[]} */
+export const PAGES = [
+  {
+    name: "floor",
+    pattern: "",
+    title: "Sessions",
+    permission: "read",
+    nav: "Sessions",
+    load: () => import("./floor_view.js"),
+  },
+  {
+    name: "session",
+    pattern: "sessions/:session",
+    title: "Session",
+    permission: "read",
+    under: "floor",
+    load: () => import("./session_view.js"),
+  },
+  {
+    name: "patients",
+    pattern: "patients",
+    title: "Patients",
+    permission: "read",
+    nav: "Patients",
+    load: () => import("./patients_view.js"),
+  },
+  {
+    name: "patient",
+    pattern: "patients/:patient",
+    title: "Patient",
+    permission: "read",
+    under: "patients",
+    load: () => import("./patient_view.js"),
+  },
+  {
+    name: "system",
+    pattern: "system",
+    title: "System",
+    permission: "read",
+    nav: "System",
+    load: () => import("./system_view.js"),
+  },
+];
+
+/**
+ * The page of an address.
+ * @param {string} hash as `location.hash` gives it
+ * @returns {{ page: Page, params: Record<string, string> } | null} null for an address that no page has
+ */
+export function pageOf(hash) {
+  const asked = partsOf(hash.replace(/^#\/?/, "").replace(/\?.*$/, ""));
+  for (const page of PAGES) {
+    const params = fit(partsOf(page.pattern), asked);
+    if (params) return { page, params };
+  }
+  return null;
+}
+
+/**
+ * The address of a page.
+ * @param {string} name @param {Record<string, string>} [params]
+ */
+export function addressOf(name, params = {}) {
+  const page = PAGES.find((each) => each.name === name);
+  if (!page) throw new Error(`no page is called ${name}`);
+  return `#/${page.pattern.replace(/:(\w+)/g, (_, word) => encodeURIComponent(params[word]))}`;
+}
+
+/** @param {string} path */
+const partsOf = (path) => path.split("/").filter((part) => part !== "");
+
+/** Parts of an address are ids: letters, digits, and what joins them. @param {string[]} wanted @param {string[]} asked */
+function fit(wanted, asked) {
+  if (wanted.length !== asked.length) return null;
+  /** @type {Record<string, string>} */
+  const params = {};
+  for (const [place, part] of wanted.entries()) {
+    if (!part.startsWith(":")) {
+      if (part !== asked[place]) return null;
+    } else if (/^[\w.-]+$/.test(asked[place])) params[part.slice(1)] = asked[place];
+    else return null;
+  }
+  return params;
+}
