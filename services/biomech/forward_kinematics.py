@@ -6,8 +6,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from schemas.vocabulary import Segment
+from services.biomech.bones import SEGMENTS
 from services.biomech.kernels.kinematics import place
-from services.biomech.lower_body import SEGMENTS, LowerBodyModel
+from services.biomech.lower_body import LowerBodyModel
 
 Array = NDArray[np.float64]
 

@@ -15,12 +15,10 @@ from numpy.typing import NDArray
 
 from schemas.session import Anthropometry
 from schemas.vocabulary import LOWER_BODY, DegreeOfFreedom, Segment
+from services.biomech.bones import SEGMENTS
 from services.biomech.kernels.tables import Body, Sensors
 
 Array = NDArray[np.float64]
-
-SEGMENTS = (Segment.PELVIS, Segment.THIGH_RIGHT, Segment.SHANK_RIGHT, Segment.THIGH_LEFT, Segment.SHANK_LEFT)
-"""Segments of the model, root outwards."""
 
 PARENT_SEGMENT = {
     Segment.THIGH_RIGHT: Segment.PELVIS,

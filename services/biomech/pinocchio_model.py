@@ -11,7 +11,8 @@ import pinocchio as pin
 from numpy.typing import NDArray
 
 from schemas.vocabulary import Segment
-from services.biomech.lower_body import DEFAULT_POSITION, SEGMENTS, LowerBodyModel, SensorMount
+from services.biomech.bones import SEGMENTS
+from services.biomech.lower_body import DEFAULT_POSITION, LowerBodyModel, SensorMount
 
 Array = NDArray[np.float64]
 

@@ -9,7 +9,4 @@ from services.estimation.lower_body.warm_up import warm_up as warm_up_lower_body
 from services.estimation.node import build
 
 if __name__ == "__main__":
-    warm_up_lower_body()
-    warm_up_knee()
-    warm_up_body()
-    sys.exit(run_node_service("estimation", build))
+    sys.exit(run_node_service("estimation", build, (warm_up_lower_body, warm_up_knee, warm_up_body)))

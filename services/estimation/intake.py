@@ -12,8 +12,8 @@ from schemas.imu import ImuBatch, SensorSamples
 from schemas.session import SensorDescription, SessionDescription
 from schemas.signals import IMU
 from schemas.vocabulary import Segment
+from services.biomech.bones import SEGMENTS
 from services.biomech.event_sources import lone_segments, worn_segments
-from services.biomech.lower_body import SEGMENTS
 from services.estimation.parameters import EstimationParameters
 from services.estimation.samples import Sample, TickBatch, gather
 from services.estimation.sensor_checks import SensorChecks

@@ -21,9 +21,10 @@ NO_CAMERA = Watched({}, [])
 
 
 def waiting_pose(
-    captured_ns: int, phase: str, message: str, notice: str, statuses: list[SensorStatus], watched: Watched = NO_CAMERA
-) -> LivePose:
-    """The picture before there is an estimate."""
+    captured_ns: int, phase: str, message: str, notice: str, statuses: list[SensorStatus],
+    watched: Watched = NO_CAMERA, stood: float | None = None,
+) -> LivePose:  # fmt: skip
+    """The picture before there is an estimate; `stood` where standing still is waited for."""
     return LivePose(
         captured_ns=captured_ns,
         phase=phase,
@@ -36,6 +37,7 @@ def waiting_pose(
         centres=watched.centres,
         cameras=watched.cameras,
         cadence_per_min=None,
+        stood=stood,
     )
 
 

@@ -12,7 +12,7 @@ from schemas.rhythm import Rhythm
 from schemas.session import SessionDescription
 from schemas.signals import JOINT_STATE, RHYTHM
 from schemas.vocabulary import LOWER_BODY, Side
-from services.biomech.lower_body import SEGMENTS
+from services.biomech.bones import SEGMENTS
 from services.flow.message import Envelope, Message, Stream
 from services.ingest.synthetic.gait import WalkingBody
 from services.ingest.synthetic.parameters import WalkParameters

@@ -17,9 +17,10 @@ from numpy.typing import NDArray
 
 from schemas.session import Anthropometry
 from services.bench.scoreboard import Row, Scoreboard, at_least, at_most, informative
+from services.biomech.bones import SEGMENTS
 from services.biomech.companions import CompanionModel
 from services.biomech.kernels.step import step
-from services.biomech.lower_body import SEGMENTS, LowerBodyModel, SensorMount
+from services.biomech.lower_body import LowerBodyModel, SensorMount
 from services.biomech.lower_body_ekf import LowerBodyEkf, MeasurementModel, NoiseModel
 from services.biomech.pinocchio_model import PinocchioBody
 from services.biomech.textbook_ekf import TextbookEkf

@@ -6,11 +6,17 @@ does not depend on where between pelvis and chest it bends.
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
-from math import acos, atan2, cos, sin, sqrt
+from math import acos, atan2, cos, radians, sin, sqrt
 
-from schemas.vocabulary import JointCentre, Side
-from services.biomech.whole_body.model import CENTRE_NAMES, DOF, TRUNK_JOINT
-from services.biomech.whole_body.observability import LARGEST_DEVIATION
+from schemas.vocabulary import WHOLE_BODY, JointCentre, Side
+
+TRUNK_JOINT = 0.55
+"""Share of the trunk's length at which spine_mid lies."""
+LARGEST_DEVIATION = radians(15.0)
+"""rad. A less certain angle is not shown."""
+
+_DOF = {dof.name: i for i, dof in enumerate(WHOLE_BODY)}
+_CENTRES = tuple(JointCentre)
 
 STEP = 1e-4
 """rad, of the differences that give a deviation."""
@@ -76,9 +82,9 @@ def directions(
     """
     shown = {}
     for name, direction in DIRECTIONS.items():
-        if not all(seen[CENTRE_NAMES.index(centre)] for centre in direction.shown_by):
+        if not all(seen[_CENTRES.index(centre)] for centre in direction.shown_by):
             continue
-        places = [DOF[need] for need in direction.needs]
+        places = [_DOF[need] for need in direction.needs]
         at = [position[place] for place in places]
         variance = sum((_slope(direction, at, k) * deviation[place]) ** 2 for k, place in enumerate(places))
         if variance <= LARGEST_DEVIATION**2:

@@ -14,6 +14,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from schemas.vocabulary import WHOLE_BODY, JointCentre
+from services.biomech.whole_body.directions import TRUNK_JOINT
 from services.biomech.whole_body.kernels.kinematics import differentiate_alone, place_alone
 from services.biomech.whole_body.kernels.tables import (
     BODY,
@@ -40,9 +41,6 @@ LENGTH_NAMES = (
 CENTRE_NAMES = tuple(JointCentre)
 DOF = {dof.name: i for i, dof in enumerate(WHOLE_BODY)}
 """Name of an angle -> its place among the 22."""
-
-TRUNK_JOINT = 0.55
-"""Share of the trunk's length at which spine_mid lies."""
 
 PARTNERS = ((1, 2), (3, 4), (6, 7), (8, 9), (10, 11))
 """Lengths of the right and the left side."""

@@ -13,6 +13,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from schemas.vocabulary import WHOLE_BODY, JointCentre
+from services.biomech.whole_body.directions import LARGEST_DEVIATION
 from services.biomech.whole_body.model import CENTRE_NAMES, DOF, WholeBodyModel
 from services.biomech.whole_body.parameters import unsided
 
@@ -23,8 +24,6 @@ BENT = radians(20.0)
 """rad. From here a hinge shows the rotation of the bone above it."""
 LOCKED = radians(70.0)
 """rad of ab- or adduction beyond which flexion and rotation of the shoulder merge."""
-LARGEST_DEVIATION = radians(15.0)
-"""rad. A less certain angle is not shown."""
 
 DEVIATION_SHARE = {"shoulder": 0.75, "elbow": 1.0}
 OTHER_SHARE = 0.6

@@ -3,8 +3,8 @@
 from schemas.kinematics import Calibration
 from schemas.session import SessionDescription
 from schemas.vocabulary import EventSource, Side
+from services.biomech.whole_body.directions import LARGEST_DEVIATION
 from services.biomech.whole_body.model import DOF, LENGTH_NAMES
-from services.biomech.whole_body.observability import LARGEST_DEVIATION
 from services.estimation.body.coordinates import MODEL
 from services.estimation.body.parameters import BodyParameters
 from services.estimation.body.tracker import BodyTracker, Posture

@@ -4,12 +4,12 @@ from collections.abc import Sequence
 
 from schemas.kinematics import CameraStatus, LivePose
 from schemas.session import SessionDescription
-from services.biomech.whole_body.directions import directions
+from services.biomech.figure import Pace, with_directions
 from services.biomech.whole_body.model import CENTRE_NAMES
 from services.estimation.body.coordinates import MODEL
 from services.estimation.body.frames import Frame, FrameIntake
 from services.estimation.body.tracker import BodyTracker, Posture
-from services.estimation.live_pose import Pace, Watched, estimated_pose, waiting_pose
+from services.estimation.live_pose import Watched, estimated_pose, waiting_pose
 from services.estimation.rows import Row
 from services.estimation.sensor_status import unused_cameras, unused_statuses
 
@@ -76,13 +76,3 @@ class Screen:
         state, since_ns = self._intake.state_at(now_ns, self._silent_s)
         used = CameraStatus(camera=self._intake.camera.name, state=state, people=people, since_ns=since_ns)
         return [used, *unused_cameras(self._others)]
-
-
-def with_directions(
-    pose: LivePose, position: Sequence[float], position_std: Sequence[float], seen: Sequence[bool]
-) -> LivePose:
-    """The picture with trunk lean and arm elevation beside the angles of joints, where the camera sees them."""
-    shown = directions(position, position_std, seen)
-    angles = pose.angles | {name: angle for name, (angle, _) in shown.items()}
-    stds = pose.angles_std | {name: std for name, (_, std) in shown.items()}
-    return pose.model_copy(update={"angles": angles, "angles_std": stds})

@@ -6,8 +6,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from schemas.vocabulary import JointCentre, Segment
+from services.biomech.whole_body.directions import LARGEST_DEVIATION
 from services.biomech.whole_body.model import CENTRE_NAMES
-from services.biomech.whole_body.observability import LARGEST_DEVIATION, observable
+from services.biomech.whole_body.observability import observable
 from services.estimation.body.filters import Told
 from services.estimation.body.parameters import BodyParameters
 from services.flow.node import State

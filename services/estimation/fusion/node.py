@@ -42,7 +42,7 @@ class FusionNode:
         self._camera = BodyNode(description.model_copy(update=seen))
         self._merge = MessageMerge((*self._inertial.streams, *self._camera.streams), LATENESS_NS)
         self._fuser = Fuser()
-        self._picture = FusedPicture(description.anthropometry.height_m)
+        self._picture = FusedPicture(description)
         self._quality = FusedQuality(EstimationParameters().quality)
         self._calibrations: dict[str, Calibration] = {}
         self._untold: dict[str, list[StandingMark]] = {"inertial": [], "camera": []}

@@ -4,15 +4,16 @@ from collections.abc import Mapping
 
 import numpy as np
 
-from schemas.kinematics import Calibration, JointCentres, JointState, LivePose
+from schemas.kinematics import Calibration, JointCentres, JointState, LivePose, SegmentPose
+from schemas.session import SessionDescription
 from schemas.vocabulary import BODY_MODELS, JointCentre
+from services.biomech.figure import Pace, drawn_segments, lower_body_of, segment_pictures, with_directions
 from services.biomech.whole_body.kernels.tables import COORDINATES
 from services.biomech.whole_body.model import CENTRE_NAMES, LENGTH_NAMES
 from services.biomech.whole_body.model import MODEL as BODY
 from services.biomech.whole_body.parameters import MEAN_STATURE, lengths_of
-from services.estimation.body.screen import RELATIVE, STAND, with_directions
+from services.estimation.body.screen import RELATIVE, STAND
 from services.estimation.fusion.fuser import ABSENT_NS, MODEL
-from services.estimation.live_pose import Pace
 from services.estimation.parameters import EstimationParameters
 from services.flow.node import State
 
@@ -25,7 +26,9 @@ STALE_NS = 300_000_000
 class FusedPicture:
     """Centres of the fused angles stand where the camera last had the body."""
 
-    def __init__(self, stature: float | None) -> None:
+    def __init__(self, description: SessionDescription) -> None:
+        self._body, self._drawn = description.anthropometry, drawn_segments(description)
+        stature = self._body.height_m
         lengths = lengths_of(MEAN_STATURE if stature is None else stature)
         self.lengths: dict[str, float] = dict(zip(LENGTH_NAMES, lengths.tolist(), strict=True))
         """m, by name, as the camera's estimator has them; those of people of that stature before it has."""
@@ -69,7 +72,7 @@ class FusedPicture:
             update={
                 "captured_ns": captured_ns,
                 "phase": "estimating",
-                "segments": [] if placed else self._bones(),
+                "segments": [] if placed else self._bones(joints),
                 "angles": {name: joints.position[-1][i] for i, name in valid},
                 "angles_std": {name: joints.position_std[-1][i] for i, name in valid},
                 "centres": placed,
@@ -81,9 +84,8 @@ class FusedPicture:
     def _named(centres: JointCentres) -> dict[JointCentre, list[float]]:
         return dict(zip(CENTRE_NAMES, centres.position[-1], strict=True))
 
-    def _bones(self) -> list[object]:
-        inertial = self._heard.get("inertial")
-        return [] if inertial is None else list(inertial.segments)
+    def _bones(self, joints: JointState) -> list[SegmentPose]:
+        return segment_pictures(self._body, lower_body_of(joints.position[-1]), self._drawn, joints.observed)
 
     def _completed(self, pose: LivePose) -> LivePose:
         """With the sensors and cameras of both, and what either has to say."""

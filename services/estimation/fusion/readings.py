@@ -11,7 +11,8 @@ from schemas.rhythm import Rhythm
 from schemas.vocabulary import BODY_MODELS
 from services.biomech.fusion.parameters import SHARED
 from services.biomech.fusion.shared_angles import Told, Turn
-from services.biomech.whole_body.observability import LARGEST_DEVIATION, OTHER_SHARE
+from services.biomech.whole_body.directions import LARGEST_DEVIATION
+from services.biomech.whole_body.observability import OTHER_SHARE
 from services.flow.node import State, pack_array, unpack_array
 
 Array = NDArray[np.float64]

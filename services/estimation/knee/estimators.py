@@ -1,10 +1,10 @@
 """Estimators of one knee by name."""
 
+from services.biomech.worn_legs import WornLeg
 from services.estimation.knee.band import OurBand, PublishedBand
 from services.estimation.knee.estimator import KneeEstimator
 from services.estimation.knee.found_axis import FoundAxis
 from services.estimation.knee.published_axis import PublishedAxis
-from services.estimation.knee.worn_legs import WornLeg
 from services.estimation.parameters import KneeParameters
 
 

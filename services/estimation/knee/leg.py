@@ -5,11 +5,11 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from schemas.vocabulary import Misplacement, Segment
+from schemas.vocabulary import Misplacement
+from services.biomech.worn_legs import WornLeg
 from services.estimation.knee.estimator import Fitting, Kept, KneeEstimator, KneeSample
 from services.estimation.knee.instants import Instant
 from services.estimation.knee.placement_watch import PlacementWatch
-from services.estimation.knee.worn_legs import WornLeg
 from services.estimation.parameters import KneeParameters
 from services.estimation.samples import FORCE, RATE
 from services.flow.node import State, pack_array, unpack_array
@@ -63,11 +63,6 @@ class Leg:
     def misplaced(self) -> list[Misplacement]:
         """How the sensors are worn otherwise than declared."""
         return self._watch.found
-
-    @property
-    def unseen(self) -> frozenset[Segment]:
-        """Segments whose tilt is not known: both, or none."""
-        return frozenset() if self._is_valid else frozenset(self.worn.segments)
 
     @property
     def has_kept(self) -> bool:

@@ -11,6 +11,7 @@ from schemas.signals import CALIBRATION, LEARNED_RHYTHM, LIVE_POSE
 from schemas.standing import StandingMark
 from schemas.vocabulary import Segment
 from services.biomech.rhythm.trusted import TrustedRhythm
+from services.biomech.worn_legs import worn_legs
 from services.estimation.estimates import OUTPUTS, estimates
 from services.estimation.intake import Intake
 from services.estimation.knee.chain_of_angles import ChainOfAngles
@@ -19,7 +20,7 @@ from services.estimation.knee.fitted_legs import FittedLegs
 from services.estimation.knee.instants import CommonInstants, Instant
 from services.estimation.knee.leg import Leg, LegState
 from services.estimation.knee.screen import Screen
-from services.estimation.knee.worn_legs import used_by_knees, worn_legs
+from services.estimation.knee.worn_legs import used_by_knees
 from services.estimation.learning import RhythmLearning, start_rhythm
 from services.estimation.marked_standing import Marks
 from services.estimation.parameters import EstimationParameters
@@ -222,7 +223,8 @@ class KneeNode:
         if run.last is None or not self._screen.pace.is_due(run.last.captured_ns):
             return []
         now_ns = run.last.captured_ns
-        pose = self._screen.drawn(run.last, run.valid, self._marks.notice_at(now_ns), self._reference)
+        notice = self._marks.notice_at(now_ns)
+        pose = self._screen.drawn(run.last, run.valid, run.observed, notice, self._reference)
         return [Output(LIVE_POSE, now_ns, pose)]
 
     def snapshot(self) -> State:
@@ -267,21 +269,21 @@ class _Run:
         self.learned: list[Output] = []
         self.last: Row | None = None
         self.valid: list[bool] = []
-        self._observed: list[Segment] = []
+        self.observed: list[Segment] = []
         self._rows: list[Row] = []
         self._heard = 0
 
     def add(self, row: Row, valid: list[bool], observed: list[Segment]) -> None:
         """Take the next row."""
-        if self._rows and (valid != self.valid or observed != self._observed or len(self._rows) >= LONGEST_RUN):
+        if self._rows and (valid != self.valid or observed != self.observed or len(self._rows) >= LONGEST_RUN):
             self.close()
         self._rows.append(row)
-        self.last, self.valid, self._observed = row, valid, observed
+        self.last, self.valid, self.observed = row, valid, observed
 
     def close(self) -> None:
         """What comes next is not to be in one message with what was before."""
         if self._rows:
-            self.outputs += estimates(self._rows, self.valid, self._observed)
+            self.outputs += estimates(self._rows, self.valid, self.observed)
         self._rows = []
 
     def unheard(self) -> list[Output]:

@@ -8,11 +8,11 @@ from numpy.typing import NDArray
 from schemas.kinematics import LivePose, SensorStatus
 from schemas.session import SessionDescription
 from schemas.vocabulary import Segment, SensorState
-from services.biomech.lower_body import LowerBodyModel
+from services.biomech.figure import Pace, drawn_segments, segment_pictures
 from services.estimation.intake import Intake
 from services.estimation.knee.leg import Leg
 from services.estimation.knee.wording import WRONG_UNITS, misplacement_words, wishes
-from services.estimation.live_pose import Pace, estimated_pose, segment_pictures, waiting_pose
+from services.estimation.live_pose import estimated_pose, waiting_pose
 from services.estimation.rows import Row
 from services.estimation.sensor_status import sensor_statuses, sensor_troubles, unused_statuses
 from services.estimation.standing import StandingReference
@@ -26,8 +26,8 @@ class Screen:
     def __init__(self, description: SessionDescription, intake: Intake, legs: Sequence[Leg], rate_hz: float) -> None:
         self._intake = intake
         self._legs = legs
-        self._model = LowerBodyModel(description.anthropometry)
-        self._segments = [segment for leg in legs for segment in leg.worn.segments]
+        self._body = description.anthropometry
+        self._segments = drawn_segments(description)
         self.pace = Pace(rate_hz)
 
     def waiting(self, captured_ns: int, notice: str, reference: StandingReference | None) -> LivePose:
@@ -36,11 +36,13 @@ class Screen:
         statuses, message = self._said(captured_ns, reference)
         return waiting_pose(captured_ns, phase, message, notice, statuses)
 
-    def drawn(self, row: Row, valid: Sequence[bool], notice: str, reference: StandingReference | None) -> LivePose:
+    def drawn(
+        self, row: Row, valid: Sequence[bool], observed: Sequence[Segment], notice: str,
+        reference: StandingReference | None,
+    ) -> LivePose:  # fmt: skip
         """Of the newest row."""
-        unseen: frozenset[Segment] = frozenset().union(*(leg.unseen for leg in self._legs))
         statuses, message = self._said(row.captured_ns, reference)
-        bones = segment_pictures(self._model, np.array(row.position), self._segments, unseen)
+        bones = segment_pictures(self._body, row.position, self._segments, observed)
         return estimated_pose(row, bones, valid, message, notice, statuses)
 
     def _said(self, captured_ns: int, reference: StandingReference | None) -> tuple[list[SensorStatus], str]:

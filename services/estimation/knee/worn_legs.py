@@ -1,37 +1,9 @@
-"""Legs that wear a sensor on thigh and shank, and what becomes of all other sensors."""
+"""Sensors that single knees use, and what becomes of all others."""
 
-from collections.abc import Sequence
-from typing import NamedTuple
-
-from schemas.session import SensorDescription, SessionDescription
-from schemas.vocabulary import Segment, Side
+from schemas.session import SessionDescription
+from schemas.vocabulary import Segment
+from services.biomech.worn_legs import worn_legs
 from services.estimation.intake import Used
-
-SIDES = (Side.RIGHT, Side.LEFT)
-"""Order of the legs, as in the joint coordinates."""
-
-
-class WornLeg(NamedTuple):
-    """A leg and its sensors, thigh first."""
-
-    side: Side
-    sensors: tuple[SensorDescription, SensorDescription]
-
-    @property
-    def segments(self) -> tuple[Segment, Segment]:
-        """Thigh and shank."""
-        return self.sensors[0].segment, self.sensors[1].segment
-
-
-def worn_legs(description: SessionDescription) -> list[WornLeg]:
-    """Legs with a sensor on thigh and shank; of two on one segment the first counts."""
-    worn = [sensor for hub in description.hubs for sensor in hub.sensors]
-    legs = []
-    for side in SIDES:
-        thigh, shank = (_on(worn, Segment(f"{part}_{side}")) for part in ("thigh", "shank"))
-        if thigh is not None and shank is not None:
-            legs.append(WornLeg(side, (thigh, shank)))
-    return legs
 
 
 def used_by_knees(description: SessionDescription) -> Used:
@@ -40,10 +12,6 @@ def used_by_knees(description: SessionDescription) -> Used:
     used = [sensor for leg in worn_legs(description) for sensor in leg.sensors]
     unused = {sensor.name: _why_unused(sensor.segment) for sensor in worn if sensor not in used}
     return Used(used, len(used), unused)
-
-
-def _on(worn: Sequence[SensorDescription], segment: Segment) -> SensorDescription | None:
-    return next((sensor for sensor in worn if sensor.segment is segment), None)
 
 
 def _why_unused(segment: Segment) -> str:

@@ -16,7 +16,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from schemas.vocabulary import Segment
-from services.biomech.lower_body import PARENT_SEGMENT, SEGMENTS, LowerBodyModel
+from services.biomech.bones import SEGMENTS
+from services.biomech.lower_body import PARENT_SEGMENT, LowerBodyModel
 from services.biomech.lower_body_ekf import LowerBodyEkf
 from services.biomech.rhythm.reading import RhythmReading
 from services.biomech.rhythm.stride_shape import Expected, StrideShape

@@ -7,7 +7,8 @@ from numpy.typing import NDArray
 
 from schemas.session import SensorDescription, SessionDescription
 from schemas.vocabulary import Segment
-from services.biomech.lower_body import SEGMENTS, LowerBodyModel, SensorMount
+from services.biomech.bones import SEGMENTS
+from services.biomech.lower_body import LowerBodyModel, SensorMount
 from services.biomech.lower_body_ekf import LowerBodyEkf
 from services.biomech.rhythm.reading import RhythmReading
 from services.biomech.rhythm.trusted import TrustedRhythm

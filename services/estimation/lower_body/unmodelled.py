@@ -3,7 +3,8 @@
 import numpy as np
 from numpy.typing import NDArray
 
-from services.biomech.lower_body import PARENT_SEGMENT, SEGMENTS, LowerBodyModel
+from services.biomech.bones import SEGMENTS
+from services.biomech.lower_body import PARENT_SEGMENT, LowerBodyModel
 from services.estimation.parameters import UnmodelledErrors
 
 Array = NDArray[np.float64]

@@ -5,8 +5,8 @@ import numpy as np
 from schemas.conditions import UNSAID
 from schemas.session import Anthropometry, HubDescription, Placement, SensorDescription, SessionDescription
 from schemas.vocabulary import LOWER_BODY_ESTIMATORS, Task
+from services.biomech.bones import SEGMENTS
 from services.biomech.forward_kinematics import segment_poses
-from services.biomech.lower_body import SEGMENTS
 from services.estimation.alignment import Alignment
 from services.estimation.lower_body.lower_body_filter import Calibrated, LowerBodyFilter
 from services.estimation.parameters import EstimationParameters

@@ -79,7 +79,8 @@ class Skeletons:
 
 
 def _posed(times: list[int], position: Array, valid: list[bool], anthropometry: Anthropometry) -> Iterator[Skeleton]:
-    from services.biomech.lower_body import SEGMENTS, LowerBodyModel
+    from services.biomech.bones import SEGMENTS
+    from services.biomech.lower_body import LowerBodyModel
 
     names = [freedom.name for freedom in freedoms_of("lower_body")]
     told = frozenset(name for name, known in zip(names, valid, strict=True) if known)

@@ -6,8 +6,9 @@ from numpy.typing import NDArray
 
 from schemas.session import Anthropometry
 from schemas.vocabulary import LOWER_BODY, Segment
+from services.biomech.bones import SEGMENTS
 from services.biomech.forward_kinematics import Pose, ankle_position, segment_poses
-from services.biomech.lower_body import SEGMENTS, LowerBodyModel
+from services.biomech.lower_body import LowerBodyModel
 from services.biomech.pinocchio_model import PinocchioBody
 
 Array = NDArray[np.float64]

@@ -5,7 +5,8 @@ import pytest
 from numpy.typing import NDArray
 
 from schemas.session import Anthropometry
-from services.biomech.lower_body import SEGMENTS, LowerBodyModel, SensorMount
+from services.biomech.bones import SEGMENTS
+from services.biomech.lower_body import LowerBodyModel, SensorMount
 from services.biomech.lower_body_ekf import LowerBodyEkf, MeasurementModel, NoiseModel
 from services.biomech.pinocchio_model import PinocchioBody
 from services.biomech.rotations import rotation_about

@@ -6,10 +6,11 @@ from numpy.typing import NDArray
 
 from schemas.session import Anthropometry
 from schemas.vocabulary import Segment
+from services.biomech.bones import SEGMENTS
 from services.biomech.kernels.kinematics import accelerate, orient
 from services.biomech.kernels.measurement import column, yaw_row
 from services.biomech.kernels.step import predicted_sample
-from services.biomech.lower_body import SEGMENTS, LowerBodyModel, SensorMount
+from services.biomech.lower_body import LowerBodyModel, SensorMount
 from services.biomech.lower_body_ekf import LowerBodyEkf, MeasurementModel
 from services.biomech.pinocchio_model import PinocchioBody
 from services.biomech.rotations import rotation_about

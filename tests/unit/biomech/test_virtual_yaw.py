@@ -6,7 +6,8 @@ from numpy.typing import NDArray
 
 from schemas.session import Anthropometry
 from schemas.vocabulary import Segment
-from services.biomech.lower_body import SEGMENTS, LowerBodyModel, SensorMount
+from services.biomech.bones import SEGMENTS
+from services.biomech.lower_body import LowerBodyModel, SensorMount
 from services.biomech.lower_body_ekf import LowerBodyEkf, MeasurementModel, NoiseModel
 from services.biomech.pinocchio_model import PinocchioBody
 

@@ -22,7 +22,8 @@ from schemas.session import (
 )
 from schemas.signals import IMU
 from schemas.vocabulary import LOWER_BODY, Segment
-from services.biomech.lower_body import SEGMENTS, LowerBodyModel, SensorMount
+from services.biomech.bones import SEGMENTS
+from services.biomech.lower_body import LowerBodyModel, SensorMount
 from services.biomech.pinocchio_model import PinocchioBody
 from services.biomech.rotations import rotation_about
 from services.estimation.lower_body.node import LowerBodyNode

@@ -13,7 +13,8 @@ from schemas.session import Placement
 from schemas.signals import CALIBRATION
 from schemas.standing import StandingMark
 from schemas.vocabulary import Segment
-from services.biomech.lower_body import SEGMENTS, SensorMount
+from services.biomech.bones import SEGMENTS
+from services.biomech.lower_body import SensorMount
 from services.biomech.pinocchio_model import PinocchioBody
 from services.biomech.rotations import rotation_about
 from services.estimation.lower_body.node import LowerBodyNode

@@ -6,7 +6,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from schemas.vocabulary import WHOLE_BODY
-from services.biomech.whole_body.model import DOF, PARTNERS, TRUNK_JOINT
+from services.biomech.whole_body.directions import TRUNK_JOINT
+from services.biomech.whole_body.model import DOF, PARTNERS
 from services.biomech.whole_body.parameters import REST_DEG, lengths_of, unsided
 
 Array = NDArray[np.float64]

@@ -11,12 +11,12 @@ from schemas.vocabulary import Segment, Side
 from services.biomech.forward_kinematics import segment_poses
 from services.biomech.lower_body import LowerBodyModel
 from services.biomech.rhythm.trusted import TrustedRhythm
+from services.biomech.worn_legs import worn_legs
 from services.estimation.knee.chain_of_angles import ChainOfAngles
 from services.estimation.knee.estimator import KneeSample, frame_from_axis_and_up, thigh_motion
 from services.estimation.knee.leg import LegState
 from services.estimation.knee.mounting import leftward, upward
 from services.estimation.knee.plane import plane_of
-from services.estimation.knee.worn_legs import worn_legs
 from services.estimation.parameters import KneeParameters
 from tests.unit.estimation.knee import knee_legs as legs
 

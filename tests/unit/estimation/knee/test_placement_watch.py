@@ -7,9 +7,9 @@ import pytest
 
 from schemas.session import Placement
 from schemas.vocabulary import Misplacement, Side
+from services.biomech.worn_legs import worn_legs
 from services.estimation.knee.estimator import Evidence
 from services.estimation.knee.placement_watch import PlacementWatch
-from services.estimation.knee.worn_legs import worn_legs
 from services.estimation.parameters import KneeParameters
 from tests.unit.estimation.knee import knee_legs as legs
 

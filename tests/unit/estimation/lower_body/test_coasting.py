@@ -3,7 +3,8 @@ import pytest
 
 from schemas.session import Anthropometry
 from schemas.vocabulary import Segment
-from services.biomech.lower_body import SEGMENTS, LowerBodyModel
+from services.biomech.bones import SEGMENTS
+from services.biomech.lower_body import LowerBodyModel
 from services.biomech.rhythm.reading import RhythmReading
 from services.estimation.lower_body.coasting import Coasting
 from services.estimation.parameters import CoastingParameters

@@ -5,7 +5,8 @@ import pytest
 
 from schemas.session import Anthropometry
 from schemas.vocabulary import Segment
-from services.biomech.lower_body import SEGMENTS, LowerBodyModel, SensorMount
+from services.biomech.bones import SEGMENTS
+from services.biomech.lower_body import LowerBodyModel, SensorMount
 from services.biomech.lower_body_ekf import LowerBodyEkf
 from services.estimation.lower_body.gap_filling import GapFilling, Step
 

@@ -7,7 +7,8 @@ from numpy.typing import NDArray
 from schemas.session import Placement
 from schemas.signals import CALIBRATION, JOINT_STATE
 from schemas.vocabulary import Segment
-from services.biomech.lower_body import SEGMENTS, SensorMount
+from services.biomech.bones import SEGMENTS
+from services.biomech.lower_body import SensorMount
 from services.biomech.pinocchio_model import PinocchioBody
 from services.biomech.rotations import rotation_about
 from services.estimation.lower_body.node import LowerBodyNode

@@ -6,7 +6,8 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from schemas.vocabulary import MOVEMENTS, Side, Task
-from services.biomech.whole_body.model import DOF, TRUNK_JOINT, WholeBodyModel
+from services.biomech.whole_body.directions import TRUNK_JOINT
+from services.biomech.whole_body.model import DOF, WholeBodyModel
 from services.biomech.whole_body.observability import trunk_lean as lean_of_centres
 from services.biomech.whole_body.parameters import lengths_of
 from services.segmentation.batch import COLUMNS, INDEX, Batch
