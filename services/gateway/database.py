@@ -10,7 +10,8 @@ from alembic.config import Config
 from sqlalchemy import Engine, create_engine, event, make_url, text
 from sqlalchemy.orm import Session, sessionmaker
 
-from services.gateway.access.scope import SCOPE, Scope, guard, narrow
+from services.gateway.access.guard import check_rows
+from services.gateway.access.scope import SCOPE, Scope, narrow
 
 MIGRATIONS = Path(__file__).parent / "migrations"
 
@@ -26,7 +27,7 @@ class Database:
         self.engine = _engine(url)
         self._sessions = sessionmaker(self.engine, expire_on_commit=False)
         event.listen(self._sessions, "do_orm_execute", narrow)
-        event.listen(self._sessions, "before_flush", guard)
+        event.listen(self._sessions, "before_flush", check_rows)
 
     @contextmanager
     def transaction(self, scope: Scope) -> Iterator[Session]:
@@ -57,6 +58,16 @@ class Database:
         except Exception:  # noqa: BLE001 - the question is exactly whether anything goes wrong
             return False
 
+    def scrub(self) -> None:
+        """Leave nothing of what was deleted in the database's files. Raises OperationalError while others write.
+
+        SQLite only: PostgreSQL writes over what was deleted by itself (autovacuum).
+        """
+        if self.engine.dialect.name == "sqlite":
+            with self.engine.connect().execution_options(isolation_level="AUTOCOMMIT") as connection:
+                connection.execute(text("VACUUM"))
+                connection.execute(text("PRAGMA wal_checkpoint(TRUNCATE)"))
+
     def close(self) -> None:
         """Close every connection."""
         self.engine.dispose()
@@ -78,13 +89,14 @@ def open_database(url: str) -> Database:
 
 
 def _engine(url: str) -> Engine:
-    engine = create_engine(url, pool_pre_ping=True)
+    engine = create_engine(url, pool_pre_ping=True, hide_parameters=True)
     if engine.dialect.name == "sqlite":
         event.listen(engine, "connect", _set_up_sqlite)
     return engine
 
 
 def _set_up_sqlite(connection: Any, _: object) -> None:
-    # FULL: a committed row survives a power cut, which NORMAL does not promise in WAL mode.
-    for pragma in ("journal_mode=WAL", "synchronous=FULL", "foreign_keys=ON", "busy_timeout=5000"):
+    # FULL: a committed row survives a power cut, which NORMAL does not promise in WAL mode. What is deleted is zeroed.
+    pragmas = ("journal_mode=WAL", "synchronous=FULL", "foreign_keys=ON", "busy_timeout=5000", "secure_delete=ON")
+    for pragma in pragmas:
         connection.execute(f"PRAGMA {pragma}")

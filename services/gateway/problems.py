@@ -12,7 +12,7 @@ from starlette.exceptions import HTTPException
 from starlette.requests import HTTPConnection
 from starlette.websockets import WebSocket
 
-from services.gateway.access.scope import OutOfScope
+from services.gateway.access.statements import OutOfScope
 from services.gateway.headers import HEADERS
 
 MEDIA_TYPE = "application/problem+json"
@@ -44,7 +44,9 @@ class ProblemOut(BaseModel):
 
 
 class Problem(Exception):
-    """Raised by routes; becomes a problem response."""
+    """Raised by routes; becomes a problem response. `title` None: the status in words."""
+
+    title: str | None = None
 
     def __init__(self, status: HTTPStatus, detail: str, next_step: str) -> None:
         super().__init__(detail)
@@ -59,12 +61,12 @@ def not_found(noun: str, name: str) -> Problem:
 
 
 def problem_response(
-    status: HTTPStatus, detail: str, next_step: str, faults: list[Fault] | None = None
+    status: HTTPStatus, detail: str, next_step: str, faults: list[Fault] | None = None, title: str | None = None
 ) -> JSONResponse:
     """The response for one problem."""
     body = ProblemOut(
         type="about:blank",
-        title=status.phrase,
+        title=title or status.phrase,
         status=status.value,
         detail=detail,
         next_step=next_step,
@@ -80,7 +82,7 @@ async def _from_problem(asked: HTTPConnection, error: Exception) -> JSONResponse
         await asked.accept()
         await asked.close(SOCKET_CODE + error.status, error.detail)
         return None
-    return problem_response(error.status, error.detail, error.next_step)
+    return problem_response(error.status, error.detail, error.next_step, title=error.title)
 
 
 def _from_validation(_: Request, error: Exception) -> JSONResponse:

@@ -8,8 +8,9 @@ from dataclasses import dataclass
 from typing import Any
 
 from sqlalchemy import ColumnElement, and_, or_, select
-from sqlalchemy.orm import ORMExecuteState, Session, UOWTransaction, with_loader_criteria
+from sqlalchemy.orm import ORMExecuteState, with_loader_criteria
 
+from services.gateway.access.statements import check_statement
 from services.gateway.tables import (
     BaselineRow,
     CalibrationRow,
@@ -23,10 +24,7 @@ from services.gateway.tables import (
 
 OF_SESSIONS = (MetricsRow, FormerMetricsRow, CalibrationRow, RhythmRow)
 OF_PATIENTS = (BaselineRow, TreatmentRow)
-
-
-class OutOfScope(PermissionError):
-    """Something was to be written that is not the caller's to change."""
+NARROWED = frozenset({PatientRow, SessionRow, *OF_SESSIONS, *OF_PATIENTS})
 
 
 @dataclass(frozen=True, slots=True)
@@ -70,15 +68,19 @@ SCOPE = "scope"
 
 
 def narrow(state: ORMExecuteState) -> None:
-    """Before each query: add the scope's conditions to every table that holds something of a patient."""
+    """Before each query: add the scope's conditions to every table that holds something of a patient.
+
+    Raises OutOfScope for a statement to which they can not be added.
+    """
     scope: Scope = state.session.info[SCOPE]
     if scope.clinic is None or state.is_column_load or state.is_relationship_load:
         return
+    check_statement(state, NARROWED)
     sessions = select(SessionRow.id).where(scope.sessions()).scalar_subquery()
     patients = select(PatientRow.code).where(scope.patients()).scalar_subquery()
     options = [
-        with_loader_criteria(PatientRow, scope.patients(), propagate_to_loaders=False),
-        with_loader_criteria(SessionRow, scope.sessions(), propagate_to_loaders=False),
+        _narrowed(PatientRow, scope.patients()),
+        _narrowed(SessionRow, scope.sessions()),
         *(_narrowed(table, table.session_id.in_(sessions)) for table in OF_SESSIONS),
         *(_narrowed(table, table.patient_code.in_(patients)) for table in OF_PATIENTS),
     ]
@@ -86,27 +88,4 @@ def narrow(state: ORMExecuteState) -> None:
 
 
 def _narrowed(table: Any, condition: ColumnElement[bool]) -> Any:
-    return with_loader_criteria(table, condition, propagate_to_loaders=False)
-
-
-def guard(session: Session, _: UOWTransaction, __: object) -> None:
-    """Before each write: new patients and sessions are the scope's own, and only those are changed.
-
-    A shared patient may be read and walk with us; what is known of them is their own clinic's to change.
-    """
-    scope: Scope = session.info[SCOPE]
-    if scope.clinic is None:
-        return
-    for row in session.new:
-        if isinstance(row, PatientRow | SessionRow) and row.clinic_id is None:
-            row.clinic_id = scope.clinic
-    changed = [
-        row
-        for row in (*session.new, *session.dirty, *session.deleted)
-        if session.is_modified(row) or row in session.deleted
-    ]
-    for row in changed:
-        if isinstance(row, PatientRow) and row.clinic_id != scope.clinic:
-            raise OutOfScope("a shared patient is changed by their own clinic alone")
-        if isinstance(row, SessionRow) and row.clinic_id != scope.clinic and row.patient_code not in scope.shared:
-            raise OutOfScope("the session belongs to another clinic")
+    return with_loader_criteria(table, condition, include_aliases=True, propagate_to_loaders=False)
