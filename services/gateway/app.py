@@ -31,6 +31,7 @@ from services.gateway.progress.routes import router as progress
 from services.gateway.recordings.routes import router as recordings
 from services.gateway.references.routes import router as references
 from services.gateway.report.routes import router as reports
+from services.gateway.roster.routes import router as roster
 from services.gateway.security import BodyLimit, HostNames, SecurityHeaders
 from services.gateway.sessions.keeper import SessionKeeper
 from services.gateway.sessions.routes import router as sessions
@@ -45,6 +46,7 @@ DESCRIPTION = "Patients, sessions, metrics and recordings of one Ambula site. Re
 ROUTERS = (
     accounts,
     patients,
+    roster,
     visits,
     progress,
     treatments,

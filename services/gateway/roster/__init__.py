@@ -1,0 +1,1 @@
+"""The list of patients as somebody looks through it: when each came, and how they stand."""
