@@ -27,6 +27,14 @@ class Reason(StrEnum):
     NOT_RECORDED = "not_recorded"
 
 
+class Readiness(StrEnum):
+    """Whether a service does its work already."""
+
+    COMPILING = "compiling"
+    """What runs per sample is being compiled; the first start on a machine takes a minute and a half."""
+    READY = "ready"
+
+
 class Rejection(Payload):
     """How often something was rejected for one reason since the service or session started."""
 
@@ -68,6 +76,7 @@ class Health(Payload):
     errors: int = Field(ge=0, description="number of unexpected exceptions since the start; each is in the log")
     rejections: list[Rejection] = Field(description="what could not be tied to a session")
     sessions: list[SessionHealth]
+    readiness: Readiness = Field(description="ready, or what it still does before it works")
 
 
 class Gap(Payload):

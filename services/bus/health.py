@@ -6,7 +6,7 @@ import threading
 import time
 from collections.abc import Callable
 
-from schemas.health import Health, Rejection, SessionHealth
+from schemas.health import Health, Readiness, Rejection, SessionHealth
 from schemas.signals import health_key, service_token_key
 from services.bus.connection import Bus
 from services.bus.logs import event
@@ -18,7 +18,7 @@ logger = logging.getLogger(__name__)
 
 
 class HealthReporter:
-    """Holds the service's liveliness token and publishes its Health, on a thread of its own, until closed.
+    """Publishes the service's Health and holds its token, once it is ready, on a thread of its own, until closed.
 
     `sessions`, `rejections` and `errors` are asked each second and must be quick and safe from any thread.
     """
@@ -31,17 +31,20 @@ class HealthReporter:
         sessions: Callable[[], list[SessionHealth]] = list,
         rejections: Callable[[], list[Rejection]] = list,
         errors: Callable[[], int] = int,
+        readiness: Readiness = Readiness.READY,
     ) -> None:
         self._bus = bus
         self._queue = queue
         self._sessions = sessions
         self._rejections = rejections
         self._errors = errors
+        self._readiness = readiness
         self._started = time.monotonic()
         self._stop = threading.Event()
         site = bus.settings.site
         self._key = health_key(site, bus.service, bus.instance)
-        self._token = bus.declare_token(service_token_key(site, bus.service, bus.instance))
+        is_ready = readiness is Readiness.READY
+        self._token = bus.declare_token(service_token_key(site, bus.service, bus.instance)) if is_ready else None
         self._thread = threading.Thread(target=self._run, name="health", daemon=True)
         self._thread.start()
 
@@ -60,13 +63,15 @@ class HealthReporter:
             errors=self._bus.errors + self._errors(),
             rejections=self._rejections(),
             sessions=self._sessions(),
+            readiness=self._readiness,
         )
 
     def close(self) -> None:
         """Take the token back and fall silent."""
         self._stop.set()
         self._thread.join(2.0)
-        self._token.close()
+        if self._token is not None:
+            self._token.close()
 
     def _run(self) -> None:
         while not self._stop.wait(PERIOD_S):

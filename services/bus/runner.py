@@ -3,7 +3,7 @@
 import logging
 import threading
 import time
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from typing import TypeVar
 
 from schemas.health import Progress, Reason, Rejection, SessionHealth
@@ -15,6 +15,7 @@ from services.bus.hosting import NodeSession, open_host
 from services.bus.lifetime import stop_event
 from services.bus.logs import event, set_up_logging
 from services.bus.loop import EventLoop
+from services.bus.preparation import prepare
 from services.bus.received import Received
 from services.bus.sessions import SessionWatch
 from services.bus.settings import BusSettings
@@ -31,8 +32,11 @@ Argument = TypeVar("Argument")
 logger = logging.getLogger(__name__)
 
 
-def run_node_service(service: str, build: NodeFactory) -> int:
-    """Host a node of `build` in every session until SIGTERM or SIGINT; the exit status."""
+def run_node_service(service: str, build: NodeFactory, warm_ups: Sequence[Callable[[], None]] = ()) -> int:
+    """Host a node of `build` in every session until SIGTERM or SIGINT; the exit status.
+
+    The `warm_ups` compile what runs per sample; they come first, and the service says so meanwhile.
+    """
     set_up_logging(service)
     stop = stop_event()
     settings = BusSettings()
@@ -41,6 +45,8 @@ def run_node_service(service: str, build: NodeFactory) -> int:
     if bus is None:
         return 0
     with bus:
+        if warm_ups and not prepare(bus, warm_ups, stop):
+            return 0
         NodeService(bus, build, stop).run()
     logger.info(event("stopped"))
     return 0

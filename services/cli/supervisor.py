@@ -13,10 +13,12 @@ from dataclasses import dataclass, field
 from types import FrameType
 from typing import Any, Self
 
-from schemas.signals import service_token_key
+from schemas.health import Health, Readiness
+from schemas.signals import health_key, service_token_key
 from services.bus.connection import Bus
 from services.bus.lifetime import SUPERVISOR_VARIABLE
 from services.bus.logs import event
+from services.bus.received import Received
 from services.bus.router import Router, open_router
 from services.bus.settings import BusSettings
 
@@ -46,6 +48,7 @@ class _Child:
     process: subprocess.Popen[str]
     started: float
     instances: set[str] = field(default_factory=set)
+    compiling: bool = False
     last_words: deque[str] = field(default_factory=lambda: deque(maxlen=LAST_WORDS))
     back_off_s: float = FIRST_BACK_OFF_S
     restarts: int = 0
@@ -90,6 +93,7 @@ class Supervisor:
         try:
             self._bus = Bus.open(self.settings, "supervisor")
             self._bus.watch_tokens(service_token_key(self.settings.site, "*", "*"), self._note_token)
+            self._bus.subscribe(health_key(self.settings.site, "*", "*"), self._note_health)
             for name in self.services:
                 self._children[name] = _Child(name, self._spawn(name), time.monotonic())
             threading.Thread(target=self._watch, name="supervisor", daemon=True).start()
@@ -103,10 +107,16 @@ class Supervisor:
         self._stop()
         return kind is KeyboardInterrupt
 
-    def wait_until_ready(self, timeout_s: float = 60.0) -> None:
-        """Wait for every service's token. Raises NotReady with the last words of those that are missing."""
+    def wait_until_ready(
+        self, timeout_s: float = 60.0, tell: Callable[[list[str], list[str]], None] = lambda _missing, _compiling: None
+    ) -> None:
+        """Wait for every service's token, telling who is missing and who of them compiles what it runs.
+
+        Raises NotReady with the last words of those that are missing.
+        """
         end = time.monotonic() + timeout_s
         while missing := [child for child in self._children.values() if not child.instances]:
+            tell([child.name for child in missing], [child.name for child in missing if child.compiling])
             if time.monotonic() >= end:
                 words = "\n".join(f"  {child.name} | {line}" for child in missing for line in child.last_words)
                 names = ", ".join(child.name for child in missing)
@@ -174,6 +184,12 @@ class Supervisor:
         if child is None:
             return
         (child.instances.add if alive else child.instances.discard)(instance)
+
+    def _note_health(self, received: Received) -> None:
+        report = Health.model_validate_json(received.payload)
+        child = self._children.get(report.service)
+        if child is not None:
+            child.compiling = report.readiness is Readiness.COMPILING
 
     def _watch(self) -> None:
         while not self._stopping.wait(LOOK_S):

@@ -1,6 +1,7 @@
 """`ambula up`: every service as a child process, one router, one page to open."""
 
 import time
+from typing import Self
 
 from services.bus.connection import Bus
 from services.bus.settings import BusSettings
@@ -28,8 +29,8 @@ def run_stack(*, demo: bool, seconds: float | None) -> int:
     """Start, serve until Ctrl-C (or for so many seconds), stop in order. Exit code."""
     settings = BusSettings()
     with Supervisor(SERVICES, settings) as stack:
-        out.print("starting the services (the first start compiles the filters: up to two minutes) ...")
-        stack.wait_until_ready(timeout_s=180)
+        with _Progress() as progress:
+            stack.wait_until_ready(timeout_s=300, tell=progress.tell)
         gateway = GatewaySettings()
         out.print(f"\n  Open  [bold]{gateway.url}[/bold]  in a browser. Ctrl-C stops everything.")
         _tell_how_to_sign_in(gateway, demo=demo)
@@ -37,6 +38,31 @@ def run_stack(*, demo: bool, seconds: float | None) -> int:
             _start_demo(stack.settings)
         stack.run(seconds)
     return 0
+
+
+class _Progress:
+    """A line that says what is waited for; on a terminal it moves, elsewhere each news is a line of its own."""
+
+    def __init__(self) -> None:
+        self._began = time.monotonic()
+        self._said = ""
+        self._status = err.status("starting the services ...")
+
+    def __enter__(self) -> Self:
+        self._status.start()
+        return self
+
+    def __exit__(self, *_: object) -> None:
+        self._status.stop()
+
+    def tell(self, missing: list[str], compiling: list[str]) -> None:
+        said = f"starting {', '.join(missing)}"
+        if compiling:
+            said = f"{' and '.join(compiling)} being compiled, about a minute and a half on a first start"
+        if not err.is_terminal and said != self._said:
+            err.print(f"{said} ...", highlight=False)
+        self._said = said
+        self._status.update(f"{said} ... {time.monotonic() - self._began:.0f} s")
 
 
 def _tell_how_to_sign_in(gateway: GatewaySettings, *, demo: bool) -> None:

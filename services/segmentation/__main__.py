@@ -7,5 +7,4 @@ from services.segmentation.node import build
 from services.segmentation.warm_up import warm_up
 
 if __name__ == "__main__":
-    warm_up()
-    sys.exit(run_node_service("segmentation", build))
+    sys.exit(run_node_service("segmentation", build, (warm_up,)))

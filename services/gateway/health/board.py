@@ -5,7 +5,7 @@ from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Any, Literal
 
-from schemas.health import Health, Reason
+from schemas.health import Health, Readiness, Reason
 
 SERVICES = ("ingest", "estimation", "segmentation", "metrics", "archive")
 """Services that a working floor needs beside the gateway."""
@@ -41,6 +41,12 @@ class HealthBoard:
         recent = [(health, age) for health, age in listed if age < FORGET_S]
         return sorted(recent, key=lambda each: (each[0].service, each[0].instance))
 
+    def preparing(self) -> list[str]:
+        """Needed services that are there but do not work yet: what they run is being compiled."""
+        told = [(health.service, health.readiness) for health, age in self.reports() if not self.is_stale(age)]
+        at_work = {service for service, readiness in told if readiness is Readiness.READY}
+        return [name for name in SERVICES if name not in at_work and name in dict(told)]
+
     def silent(self) -> list[str]:
         """Needed services of which no instance has reported lately."""
         heard = {health.service for health, age in self.reports() if not self.is_stale(age)}
@@ -65,4 +71,4 @@ class HealthBoard:
     def brief(self) -> dict[str, Any]:
         """For every screen: is anybody out there, and who is not."""
         silent = self.silent()
-        return {"connected": len(silent) < len(SERVICES), "silent": silent}
+        return {"connected": len(silent) < len(SERVICES), "silent": silent, "preparing": self.preparing()}

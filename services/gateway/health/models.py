@@ -2,7 +2,7 @@
 
 from pydantic import BaseModel, ConfigDict, Field
 
-from schemas.health import Rejection, SessionHealth
+from schemas.health import Readiness, Rejection, SessionHealth
 
 
 class ServiceHealth(BaseModel):
@@ -23,6 +23,7 @@ class ServiceHealth(BaseModel):
     errors: int = Field(ge=0, description="number of unexpected exceptions", examples=[0])
     rejections: list[Rejection] = Field(description="what could not be tied to a session")
     sessions: list[SessionHealth] = Field(description="what it says of each session")
+    readiness: Readiness = Field(description="ready, or what it still does before it works", examples=["ready"])
 
 
 class HealthOut(BaseModel):
@@ -34,4 +35,7 @@ class HealthOut(BaseModel):
     database: bool = Field(description="the database answers")
     pages: bool = Field(description="the web pages are built")
     silent: list[str] = Field(description="needed services that are not heard", examples=[[]])
+    preparing: list[str] = Field(
+        description="needed services that compile what they run, and work after", examples=[[]]
+    )
     services: list[ServiceHealth]

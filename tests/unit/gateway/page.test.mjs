@@ -5,7 +5,7 @@ import { test } from "node:test";
 const sources = new URL("../../../services/gateway/web/src/", import.meta.url);
 const { figureOf, headingOf, between, kneeFan, rotate } = await import(new URL("figure.js", sources));
 const { Stage } = await import(new URL("stage.js", sources));
-const { byTrouble, connectionOf, jointName, lastData, metricName, segmentName, stateOf } = await import(
+const { byTrouble, connectionOf, jointName, lastData, metricName, nobody, segmentName, stateOf } = await import(
   new URL("words.js", sources)
 );
 const { misplacedText } = await import(new URL("words.js", sources));
@@ -238,6 +238,18 @@ test("the line to the gateway is told apart from the services behind it", () => 
   assert.match(connectionOf(true, { connected: false, silent: [] }).word, /No live data/);
   assert.match(connectionOf(true, { connected: true, silent: ["archive"] }).word, /Not recording/);
   assert.equal(connectionOf(true, { connected: true, silent: [] }).word, "Connected");
+});
+
+test("a first start says what it does instead of being silent", () => {
+  const first = { connected: true, silent: [], preparing: ["estimation"] };
+  const said = "Getting ready: estimators are being compiled, about a minute and a half";
+  assert.deepEqual(connectionOf(true, first), { word: said, tone: "wait" });
+  assert.match(connectionOf(true, { ...first, silent: ["archive"] }).word, /Not recording/);
+  assert.equal(connectionOf(true, { ...first, preparing: [] }).word, "Connected");
+  assert.match(nobody(true, ["segmentation"]).advice, /analyses are being compiled/);
+  assert.equal(nobody(true).title, "Nobody walks just now");
+  assert.equal(stateOf(now({ age_s: null, preparing: ["estimation"] })).word, "Getting ready");
+  assert.equal(stateOf(now({ age_s: null, preparing: ["segmentation"] })).word, "No data yet");
 });
 
 test("names are written for readers", () => {

@@ -6,6 +6,7 @@ def health(service: str, instance: str = "1", **changes) -> Health:
     fields = {
         "service": service, "instance": instance, "uptime_s": 5.0, "cpu_s": 1.0, "rss_bytes": 1000, "queue_length": 0,
         "queue_capacity": 10, "queue_dropped": 0, "errors": 0, "rejections": [], "sessions": [],
+        "readiness": "ready",
     }  # fmt: skip
     return Health(**(fields | changes))
 
@@ -31,6 +32,16 @@ def test_without_a_bus_health_still_answers(client):
 def test_a_database_that_is_away_is_told(client, gateway, monkeypatch):
     monkeypatch.setattr(gateway.database, "answers", lambda: False)
     assert client.get("/v1/health").json()["database"] is False
+
+
+def test_who_compiles_is_not_silent_and_not_at_work(client, hub):
+    hub.health.record(health("estimation", readiness="compiling"))
+    told = client.get("/v1/health").json()
+    assert told["preparing"] == ["estimation"]
+    assert "estimation" not in told["silent"]
+    assert told["services"][0]["readiness"] == "compiling"
+    hub.health.record(health("estimation", "2"))
+    assert client.get("/v1/health").json()["preparing"] == [], "another instance is at work"
 
 
 def test_silence_is_noticed_and_retired_instances_are_forgotten():

@@ -61,6 +61,7 @@ def archive(*, low: bool, waits: bool) -> Health:
     return Health(
         service="archive", instance="i", uptime_s=1, cpu_s=1, rss_bytes=1, queue_length=0, queue_capacity=1,
         queue_dropped=0, errors=0, rejections=disk if low else [], sessions=[session],
+        readiness="ready",
     )  # fmt: skip
 
 

@@ -168,19 +168,27 @@ export const STALE_S = 1;
 /**
  * The one word for a running session, worst thing first.
  * @param {{age_s: number|null, phase: string|null, message: string|null, sensors: {sensor: string, state: string}[],
- *   cameras: {state: string, people: number}[], segments: Record<string, string>, misplaced: Record<string, string[]>, silent: string[], heard: boolean}} now
+ *   cameras: {state: string, people: number}[], segments: Record<string, string>, misplaced: Record<string, string[]>, silent: string[],
+ *   preparing?: string[], recording_stopped?: string|null, heard: boolean}} now
  * @returns {{word: string, tone: "lost"|"check"|"wait"|"good", light: string}}
  */
 export function stateOf(now) {
-  const { word, tone } = judge(now);
-  return { word, tone, light: { lost: "Lost", check: "Check sensor", wait: "Wait", good: "Good" }[tone] };
+  const { word, tone, light } = judge(now);
+  return { word, tone, light: light ?? { lost: "Lost", check: "Check sensor", wait: "Wait", good: "Good" }[tone] };
 }
 
 function calibratingStep(message) {
   return message ? message.charAt(0).toLowerCase() + message.slice(1) : "stand still";
 }
 
-function judge({ age_s, phase, message, sensors, cameras, segments, misplaced, silent, heard }) {
+/** Why the archive writes nothing of a session just now. */
+const NOT_RECORDED = {
+  disk: "Recording stopped - disk nearly full",
+  refused: "Recording stopped - the disk refuses",
+};
+
+function judge(now) {
+  const { age_s, phase, message, sensors, cameras, segments, misplaced, silent, preparing, heard } = now;
   const estimating = !silent.includes("estimation");
   if (age_s !== null && age_s > STALE_S) {
     if (heard && !estimating && !silent.includes("archive")) {
@@ -191,7 +199,8 @@ function judge({ age_s, phase, message, sensors, cameras, segments, misplaced, s
       tone: age_s > 5 ? "lost" : "check",
     };
   }
-  if (age_s === null) return { word: "No data yet", tone: "wait" };
+  if (now.recording_stopped) return { word: NOT_RECORDED[now.recording_stopped], tone: "lost", light: "Not recording" };
+  if (age_s === null) return { word: preparing?.includes("estimation") ? "Getting ready" : "No data yet", tone: "wait" };
   const lost = sensors.find((each) => each.state === "missing");
   if (lost) return { word: `${segmentName(segments[lost.sensor] ?? lost.sensor)} sensor lost`, tone: "lost" };
   const doubtful = sensors.find((each) => each.state === "stuck" || each.state === "rejected");
@@ -227,7 +236,10 @@ export const STORED_WORDS = {
 };
 
 /** What stands where the cards would be. */
-export function nobody(connected) {
+export function nobody(connected, preparing = []) {
+  if (connected && preparing.length > 0) {
+    return { title: "Getting ready", advice: `${gettingReady(preparing)}. Sessions may be started; they are recorded.` };
+  }
   if (connected) {
     return {
       title: "Nobody walks just now",
@@ -240,12 +252,20 @@ export function nobody(connected) {
   };
 }
 
+/** What a first start does: services are there, and not at work yet. Empty when all are at work. */
+export function gettingReady(preparing) {
+  if (!preparing?.length) return "";
+  const what = preparing.includes("estimation") ? "estimators are" : "analyses are";
+  return `Getting ready: ${what} being compiled, about a minute and a half`;
+}
+
 /** What the header says about the line to the gateway and to the services behind it. */
 export function connectionOf(socketOpen, status) {
   if (!socketOpen) return { word: "Connection lost – trying again", tone: "lost" };
   if (!status) return { word: "Connecting", tone: "wait" };
   if (!status.connected) return { word: "No live data – stored sessions can be read", tone: "check" };
   if (status.silent.includes("archive")) return { word: "Not recording – the archive is silent", tone: "lost" };
+  if (status.preparing?.length > 0) return { word: gettingReady(status.preparing), tone: "wait" };
   if (status.silent.length > 0) return { word: `Silent: ${status.silent.join(", ")}`, tone: "check" };
   return { word: "Connected", tone: "good" };
 }
