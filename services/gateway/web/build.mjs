@@ -1,18 +1,18 @@
 // Bundles the pages into ../static/dist. Everything a browser will ask for is in there; nothing comes from elsewhere.
 // Names carry a hash of what is inside, so a browser keeps a file for as long as it is the one that is meant.
 import { build } from "esbuild";
-import { copyFile, mkdir, readFile, rm, writeFile } from "node:fs/promises";
+import { copyFile, mkdir, readFile, rename, rm, writeFile } from "node:fs/promises";
 import { basename, dirname, join, relative } from "node:path";
 import { fileURLToPath } from "node:url";
 
 const here = dirname(fileURLToPath(import.meta.url));
-const dist = join(here, "..", "static", "dist");
+const served = join(here, "..", "static", "dist");
+const dist = `${served}.${process.pid}`;
 const swagger = join(here, "node_modules", "swagger-ui-dist");
 const ENTRIES = ["src/main.js", "src/pages.js", "src/docs.js", "src/style.css"];
 
 const preload = (name) => `    <link rel="modulepreload" href="/static/${name}" />\n`;
 
-await rm(dist, { recursive: true, force: true });
 await mkdir(dist, { recursive: true });
 const { metafile } = await build({
   absWorkingDir: here,
@@ -62,3 +62,8 @@ for (const name of ["three", "uplot", "swagger-ui-dist"]) {
   licences.push(`${name} ${version}\n\n${await readFile(join(folder, "LICENSE"), "utf8")}`);
 }
 await writeFile(join(dist, "LICENSES.txt"), licences.join("\n\n----\n\n"));
+
+// All at once: whoever opens the page meanwhile gets the old one or the new one.
+await rename(served, `${dist}.old`).catch(() => {});
+await rename(dist, served);
+await rm(`${dist}.old`, { recursive: true, force: true });

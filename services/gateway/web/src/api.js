@@ -46,7 +46,7 @@ export function address(path, parameters = {}) {
 }
 
 /** The address of something to download. @template {PathOf<"get">} P @param {P} path @param {Asked<"get", P>} asked */
-export const linkTo = (path, ...asked) => address(path, asked[0]);
+export const linkTo = (path, ...asked) => address(path, /** @type {Record<string, unknown>} */ (asked[0]));
 
 /** @template {PathOf<"get">} P @param {P} path @param {Asked<"get", P>} asked @returns {Promise<Answer<"get", P>>} */
 export const get = (path, ...asked) => call("GET", path, asked[0]);
@@ -64,11 +64,11 @@ export const patch = (path, ...asked) => call("PATCH", path, asked[0]);
 export const remove = (path, ...asked) => call("DELETE", path, asked[0]);
 
 /**
- * @param {string} method @param {string} path
- * @param {Record<string, unknown>} [wish]
+ * @param {string} method @param {string} path @param {unknown} wish checked where it is made
  * @returns {Promise<any>}
  */
-async function call(method, path, { body, ...parameters } = {}) {
+async function call(method, path, wish) {
+  const { body, ...parameters } = /** @type {Record<string, unknown>} */ (wish ?? {});
   const response = await ask(method, address(path, parameters), body);
   const answer = await response.json().catch(() => undefined);
   if (response.ok) return answer;

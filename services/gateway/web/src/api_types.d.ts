@@ -16,14 +16,19 @@ export type PathOf<M extends Method> = {
 type Operation<M extends Method, P extends PathOf<M>> = `/v1${P}` extends keyof paths ? paths[`/v1${P}`][M] : never;
 
 type InPath<O> = O extends { parameters: { path: infer X } } ? X : unknown;
-type InQuery<O> = O extends { parameters: { query?: infer X } } ? ([X] extends [never] ? unknown : Loose<X>) : unknown;
-/** What is null or undefined is left out of the address. */
+
+type QueryOf<O> = O extends { parameters: { query?: infer X } } ? NonNullable<X> : never;
+/** What is null is left out of the address. */
 type Loose<X> = { [K in keyof X]: X[K] | null };
-type InBody<O> = O extends { requestBody: { content: { "application/json": infer X } } }
-  ? { body: X }
-  : O extends { requestBody?: { content: { "application/json": infer X } } }
-    ? { body?: X }
-    : unknown;
+type InQuery<O> = [QueryOf<O>] extends [never] ? unknown : Loose<QueryOf<O>>;
+
+type BodyOf<O> = O extends { requestBody?: infer X } ? NonNullable<X> : never;
+type Sent<B> = B extends { content: { "application/json": infer X } } ? X : never;
+type InBody<O> = [BodyOf<O>] extends [never]
+  ? unknown
+  : O extends { requestBody: unknown }
+    ? { body: Sent<BodyOf<O>> }
+    : { body?: Sent<BodyOf<O>> };
 
 /** All that is asked: parts of the path and of the query by name, and a body where there is one. */
 export type Wish<M extends Method, P extends PathOf<M>> = InPath<Operation<M, P>> &

@@ -1,15 +1,22 @@
 // A live connection that comes back by itself, within two seconds of the gateway being there again.
 
+import { signedOut } from "./api.js";
+
 const FIRST_WAIT_MS = 250;
 const LONGEST_WAIT_MS = 1500;
 const SILENCE_MS = 4000;
 
 const NOT_LIVE = 4404;
 const NORMAL = 1000;
+const SIGNED_OUT = 4401;
 
 /** Calls `onMessage` with each message, `onState(open)` when the line comes or goes, `onEnd` when nothing more will come. */
 export class LiveSocket {
-  constructor(path, { onMessage, onState = () => {}, onEnd = () => {} }) {
+  /**
+   * @param {string} path
+   * @param {{ onMessage: (message: any) => void, onState?: (open: boolean) => void, onEnd?: () => void }} told
+   */
+  constructor(path, { onMessage, onState = (_open) => {}, onEnd = () => {} }) {
     this.path = path;
     this.onMessage = onMessage;
     this.onState = onState;
@@ -45,6 +52,11 @@ export class LiveSocket {
       return;
     }
     this.onState(false);
+    if (code === SIGNED_OUT) {
+      this.close();
+      signedOut();
+      return;
+    }
     this.timer = setTimeout(() => this.open(), this.wait);
     this.wait = Math.min(this.wait * 2, LONGEST_WAIT_MS);
   }

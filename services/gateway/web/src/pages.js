@@ -13,7 +13,7 @@
  * @property {() => void} [tick] called five times a second
  *
  * @typedef {object} App
- * @property {Me} me who has signed in; `me.may` lists what they may do
+ * @property {Me} me who has signed in (null on pages without a permission); `me.may` lists what they may do
  * @property {(name: string) => void} setTitle a better title for the document than the one in the table
  * @property {(patient?: string) => void} startSession
  * @property {(me: Me) => void} signedIn
@@ -23,17 +23,32 @@
  *
  * @typedef {object} Page
  * @property {string} name also the class of the element that the page fills
- * @property {string} pattern of the address behind `#/`; `:word` stands for a part of it
+ * @property {string} pattern of the address behind `#/`; `:word` stands for a part of it, `:word?` for one that may be missing
  * @property {string} title of the document
  * @property {Permission | null} permission without which it is not offered; null where nobody has signed in
  * @property {string} [nav] its word among the pages that are always one press away
  * @property {string} [under] the page in the navigation that it belongs to
  * @property {boolean} [bare] nothing around it: no navigation, no footer
+ * @property {boolean} [ofSite] only for those who manage every clinic of the site
  * @property {() => Promise<{ open: (place: Place) => View }>} load
  */
 
 /** @type {Page[]} */
 export const PAGES = [
+  {
+    name: "sign-in",
+    pattern: "sign-in",
+    title: "Sign in",
+    permission: null,
+    load: () => import("./sign_in_view.js"),
+  },
+  {
+    name: "first-run",
+    pattern: "first-run/:code?",
+    title: "First run",
+    permission: null,
+    load: () => import("./first_run_view.js"),
+  },
   {
     name: "floor",
     pattern: "",
@@ -90,6 +105,12 @@ export function pageOf(hash) {
   return null;
 }
 
+/** Whether somebody may see a page. @param {Page} page @param {Me | null} me */
+export function isFor(page, me) {
+  if (page.permission === null) return true;
+  return me !== null && me.may.includes(page.permission) && (!page.ofSite || me.site_admin);
+}
+
 /**
  * The address of a page.
  * @param {string} name @param {Record<string, string>} [params]
@@ -97,7 +118,8 @@ export function pageOf(hash) {
 export function addressOf(name, params = {}) {
   const page = PAGES.find((each) => each.name === name);
   if (!page) throw new Error(`no page is called ${name}`);
-  return `#/${page.pattern.replace(/:(\w+)/g, (_, word) => encodeURIComponent(params[word]))}`;
+  const path = page.pattern.replace(/:(\w+)\??/g, (_, word) => encodeURIComponent(params[word] ?? ""));
+  return `#/${path.replace(/\/$/, "")}`;
 }
 
 /** @param {string} path */
@@ -105,14 +127,14 @@ const partsOf = (path) => path.split("/").filter((part) => part !== "");
 
 /** Parts of an address are ids: letters, digits, and what joins them. @param {string[]} wanted @param {string[]} asked */
 function fit(wanted, asked) {
-  if (wanted.length !== asked.length) return null;
+  if (asked.length > wanted.length) return null;
   /** @type {Record<string, string>} */
   const params = {};
   for (const [place, part] of wanted.entries()) {
-    if (!part.startsWith(":")) {
-      if (part !== asked[place]) return null;
-    } else if (/^[\w.-]+$/.test(asked[place])) params[part.slice(1)] = asked[place];
-    else return null;
+    const [, word, optional] = /^:(\w+)(\??)$/.exec(part) ?? [];
+    if (word && asked[place] === undefined && optional) continue;
+    if (!word ? part !== asked[place] : !/^[\w.-]+$/.test(asked[place] ?? "")) return null;
+    if (word) params[word] = asked[place];
   }
   return params;
 }

@@ -1,7 +1,7 @@
 // @ts-check
 // From the address to a page: loads it, gives the document its title and puts the focus on the heading.
 import { el, fill } from "./dom.js";
-import { pageOf } from "./pages.js";
+import { isFor, pageOf } from "./pages.js";
 
 /** @typedef {import("./pages.js").App} App @typedef {import("./pages.js").Page} Page @typedef {import("./pages.js").View} View */
 
@@ -37,7 +37,7 @@ export class Router {
     if (moved) this.focusHeading(host);
     if (!found) return fill(host, nothing("There is no such page", "The address may be an old one."));
     const { page, params } = found;
-    if (page.permission && !app.me.may.includes(page.permission))
+    if (!isFor(page, app.me))
       return fill(host, nothing("This page is not for your role", "Ask an administrator of your clinic."));
     const loaded = await page.load().catch(() => null);
     if (turn !== this.turn) return;
