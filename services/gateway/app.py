@@ -13,16 +13,21 @@ from services.gateway import pages, problems
 from services.gateway.access.rules import check_rules, described
 from services.gateway.access.scope import EVERYTHING
 from services.gateway.accounts import first_run
+from services.gateway.accounts.administration import router as administration
+from services.gateway.accounts.own import router as own_account
 from services.gateway.accounts.passwords import Passwords
 from services.gateway.accounts.records import has_accounts
 from services.gateway.accounts.routes import router as accounts
 from services.gateway.audit.trail import AuditTrail
+from services.gateway.clinics.routes import router as clinics
 from services.gateway.context import Gateway
 from services.gateway.control import Control
 from services.gateway.database import open_database
+from services.gateway.devices.routes import router as devices
 from services.gateway.exports.routes import router as exports
 from services.gateway.fhir.routes import router as fhir
 from services.gateway.health.routes import router as health
+from services.gateway.keys.routes import router as keys
 from services.gateway.live.hub import LiveHub
 from services.gateway.live.routes import router as live_routes
 from services.gateway.patients.routes import router as patients
@@ -36,6 +41,7 @@ from services.gateway.security import BodyLimit, HostNames, SecurityHeaders
 from services.gateway.sessions.keeper import SessionKeeper
 from services.gateway.sessions.routes import router as sessions
 from services.gateway.settings import GatewaySettings
+from services.gateway.sharing.routes import router as sharing
 from services.gateway.sources.routes import router as sources
 from services.gateway.treatments.routes import router as treatments
 from services.gateway.versions.routes import router as versions
@@ -45,6 +51,12 @@ DESCRIPTION = "Patients, sessions, metrics and recordings of one Ambula site. Re
 
 ROUTERS = (
     accounts,
+    own_account,
+    administration,
+    clinics,
+    keys,
+    devices,
+    sharing,
     patients,
     roster,
     visits,

@@ -5,6 +5,8 @@ from pathlib import Path
 from pydantic import Field
 from pydantic_settings import BaseSettings, SettingsConfigDict
 
+from services.gateway.accounts.oidc.settings import OidcProvider, ProviderName
+
 DIST = Path(__file__).parent / "static" / "dist"
 """Where the built pages are."""
 
@@ -21,6 +23,14 @@ class GatewaySettings(BaseSettings):
     http_names: list[str] | None = Field(
         default=None,
         description="host names a browser may use; unset means the loopback names when listening there, else any",
+    )
+    public_url: str = Field(
+        default="",
+        pattern=r"^(https?://[^/\s]+)?$",
+        description="the address that browsers use, when a proxy stands before the gateway or people sign in elsewhere",
+    )
+    oidc: dict[ProviderName, OidcProvider] = Field(
+        default_factory=dict, description="sign-in services of the organisation (OpenID Connect), by name"
     )
     database: str = Field(default="", description="SQLAlchemy URL; empty for a SQLite file in the data folder")
     data_dir: Path = Field(default=Path("data"), description="the folder with the archive's recordings")

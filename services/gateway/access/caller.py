@@ -1,6 +1,7 @@
 """Who is asking."""
 
 from dataclasses import dataclass
+from datetime import datetime
 from typing import Literal
 
 from services.gateway.access.roles import MAY, Permission, Role
@@ -12,7 +13,8 @@ class Caller:
     """A person who has signed in, or a machine with a key.
 
     `account`: id of the account or the key; `login`: the name it is known by; `sign_in`: id of the browser's sign-in,
-    None for a machine; `site_admin`: may manage every clinic of the site (its accounts, not its patients).
+    None for a machine; `site_admin`: may manage every clinic of the site (its accounts, not its patients);
+    `confirmed`: when the password was last given.
     """
 
     kind: Literal["person", "machine"]
@@ -23,6 +25,7 @@ class Caller:
     shared: frozenset[str] = frozenset()
     sign_in: str | None = None
     site_admin: bool = False
+    confirmed: datetime | None = None
 
     @property
     def scope(self) -> Scope:

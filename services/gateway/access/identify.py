@@ -32,13 +32,38 @@ def cookie_of(connection: HTTPConnection) -> str | None:
 
 def cookie_name(connection: HTTPConnection) -> str:
     """The cookie's name on this kind of connection."""
-    return SECURE_COOKIE if connection.url.scheme in ("https", "wss") else COOKIE
+    return SECURE_COOKIE if is_secure(connection) else COOKIE
+
+
+def is_secure(connection: HTTPConnection) -> bool:
+    """Whether the browser came over TLS: to this process, or to a proxy at the public address before it."""
+    public: str = connection.app.state.gateway.settings.public_url
+    behind = public.startswith("https://") and connection.headers.get("host") == public.removeprefix("https://")
+    return behind or connection.url.scheme in ("https", "wss")
 
 
 def identify(connection: HTTPConnection) -> Caller:
     """Who is asking. Raises NotKnown. The audit finds the caller in the connection's state."""
     database: Database = connection.app.state.gateway.database
     caller = _caller(database, connection)
+    connection.state.caller = caller
+    return caller
+
+
+def identify_again(connection: HTTPConnection) -> Caller:
+    """Who is asking, some time after `identify`, over a connection that stays open. Raises NotKnown.
+
+    Not by the cookie: the one that the connection was opened with has been renewed since.
+    """
+    before: Caller = connection.state.caller
+    if before.sign_in is None:
+        return identify(connection)
+    gateway = connection.app.state.gateway
+    database: Database = gateway.database
+    with database.transaction(EVERYTHING) as session:
+        caller = sign_ins.find_again(session, before.sign_in, datetime.now(UTC), gateway.parameters)
+    if caller is None:
+        raise NotKnown
     connection.state.caller = caller
     return caller
 
@@ -58,3 +83,13 @@ def _caller(database: Database, connection: HTTPConnection) -> Caller:
 
 
 Identified = Annotated[Caller, Depends(identify)]
+
+
+def person(caller: Identified) -> Caller:
+    """Somebody who has signed in. Raises a 403 problem for a machine."""
+    if caller.kind != "person":
+        raise Problem(HTTPStatus.FORBIDDEN, "A key may not do this.", "Sign in as a person.")
+    return caller
+
+
+Person = Annotated[Caller, Depends(person)]

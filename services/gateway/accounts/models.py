@@ -1,4 +1,4 @@
-"""What the API takes and gives for signing in."""
+"""What the API takes and gives for signing in, and for one's own account."""
 
 from typing import Annotated
 
@@ -43,8 +43,36 @@ class SignInIn(BaseModel):
 
     model_config = ConfigDict(extra="forbid")
 
-    login: str = Field(max_length=64, description="name of the account", examples=["m.arnold"])
+    # Without control characters, which not every database takes as text.
+    login: str = Field(
+        max_length=64, pattern=r"^[^\x00-\x1f]*$", description="name of the account", examples=["m.arnold"]
+    )
     password: Password
+
+
+class ConfirmationIn(BaseModel):
+    """The password once more."""
+
+    model_config = ConfigDict(extra="forbid")
+
+    password: Password
+
+
+class PasswordChange(BaseModel):
+    """A new password for one's own account."""
+
+    model_config = ConfigDict(extra="forbid")
+
+    password: Password
+    new_password: NewPassword
+
+
+class EndedOut(BaseModel):
+    """Sign-ins that were ended."""
+
+    model_config = ConfigDict(extra="forbid")
+
+    ended: int = Field(ge=0, description="number of browsers that are signed out now", examples=[2])
 
 
 class MeOut(BaseModel):
@@ -58,4 +86,7 @@ class MeOut(BaseModel):
     clinic: str = Field(description="id of the clinic", examples=["main"])
     clinic_name: str = Field(examples=["Clinic"])
     site_admin: bool = Field(description="may manage every clinic of the site")
+    provider: str | None = Field(
+        description="the sign-in service that knows the password; null when it is known here", examples=[None]
+    )
     may: list[Permission]

@@ -1,14 +1,15 @@
-"""Accounts in the database, and who may sign in."""
+"""Accounts in the database."""
 
 import secrets
-from datetime import UTC, datetime, timedelta
+from datetime import UTC, datetime
 
-from sqlalchemy import func, select
+from sqlalchemy import func, select, update
 from sqlalchemy.orm import Session
 
 from services.gateway.access.roles import Role
 from services.gateway.access.tables import AccountRow
-from services.gateway.parameters import GatewayParameters
+from services.gateway.problems import not_found
+from services.gateway.tables import ClinicRow
 
 
 def add_account(
@@ -33,20 +34,23 @@ def has_accounts(database: Session) -> bool:
     return bool(database.scalar(select(func.count()).select_from(AccountRow)))
 
 
-def is_locked(account: AccountRow, now: datetime) -> bool:
-    """Whether wrong passwords have closed the account for a while."""
-    return account.locked_until is not None and now < account.locked_until
+def one_at_a_time(database: Session) -> None:
+    """Wait for every other transaction that changes who may do what; what is read from here on stays true.
+
+    A write that changes nothing: of the whole database's lock in SQLite, of these rows' in PostgreSQL.
+    """
+    database.execute(update(ClinicRow).values(name=ClinicRow.name), execution_options={"synchronize_session": False})
 
 
-def note_failure(account: AccountRow, now: datetime, parameters: GatewayParameters) -> None:
-    """One more wrong password: after some of them the account closes, each time for twice as long."""
-    account.failures += 1
-    over = account.failures - parameters.free_failures
-    if over >= 0:
-        wait_s = min(parameters.first_lock_s * 2.0**over, parameters.longest_lock_s)
-        account.locked_until = now + timedelta(seconds=wait_s)
+def count_site_admins(database: Session) -> int:
+    """Those who can still sign in."""
+    open_ones = select(func.count()).where(AccountRow.site_admin.is_(True), AccountRow.disabled.is_(False))
+    return database.scalar(open_ones) or 0
 
 
-def note_success(account: AccountRow) -> None:
-    """The right password: what was wrong before is forgotten."""
-    account.failures, account.locked_until = 0, None
+def get_account(database: Session, account: str) -> AccountRow:
+    """Raises a 404 problem when there is none of that id."""
+    row = database.get(AccountRow, account)
+    if row is None:
+        raise not_found("account", account)
+    return row

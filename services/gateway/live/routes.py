@@ -7,7 +7,7 @@ import anyio
 from fastapi import APIRouter, WebSocket, WebSocketDisconnect
 from starlette.concurrency import run_in_threadpool
 
-from services.gateway.access.identify import Identified, NotKnown, identify
+from services.gateway.access.identify import Identified, NotKnown, identify_again
 from services.gateway.access.rules import READ
 from services.gateway.access.scope import EVERYTHING
 from services.gateway.audit import records as audit
@@ -83,7 +83,7 @@ async def _ask_again(socket: WebSocket, viewer: Viewer, every_s: float) -> None:
     while True:
         await anyio.sleep(every_s)
         try:
-            caller = await run_in_threadpool(identify, socket)
+            caller = await run_in_threadpool(identify_again, socket)
         except NotKnown:
             viewer.end(SIGN_IN, "the sign-in has ended")
             return

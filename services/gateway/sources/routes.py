@@ -9,6 +9,7 @@ from services.gateway.context import Context
 from services.gateway.control import SYNTHETIC_SOURCES, ControlUnavailable, SourceKind, Worn, worn_by
 from services.gateway.problems import documented
 from services.gateway.sessions.records import DEFAULT_ESTIMATOR, known_estimators
+from services.gateway.sources.offered import offered_sources
 
 router = APIRouter(prefix="/v1/sources", tags=["sources"])
 
@@ -51,7 +52,7 @@ class SourcesOut(BaseModel):
 def list_sources(gateway: Context) -> SourcesOut:
     """Devices that send to the ingest, recordings that it has at hand, and the simulated people."""
     try:
-        offered, ready = gateway.control.offered(), True
+        offered, ready = offered_sources(gateway), True
     except ControlUnavailable:
         offered, ready = [], False
     sources = [

@@ -1,0 +1,1 @@
+"""The clinics of a site, and how long each keeps its recordings."""

@@ -1,0 +1,1 @@
+"""Keys of machines, as their administrators see them."""

@@ -1,0 +1,1 @@
+"""Patients whom a named colleague of another clinic may see."""
