@@ -71,6 +71,16 @@ def scan(path: Path, clocks: dict[str, int] | None = None, limits: ReadLimits = 
     return scanner.result
 
 
+def description_in(metadata: Metadata) -> SessionDescription | None:
+    """The session that a metadata record describes; None for one of another kind. Raises one of BROKEN."""
+    if metadata.name != SESSION_METADATA:
+        return None
+    text = metadata.metadata[DESCRIPTION_FIELD]
+    if hashlib.sha256(text.encode()).hexdigest() != metadata.metadata[DESCRIPTION_SHA256_KEY]:
+        raise ValueError("the session description has been altered")
+    return SessionDescription.model_validate_json(text)
+
+
 class _Scanner:
     """Takes the frames of one file; a chunk counts only when every message in it is in its place."""
 
@@ -96,11 +106,7 @@ class _Scanner:
 
     def _metadata(self, frame: Frame) -> None:
         metadata = Metadata.read(ReadDataStream(io.BytesIO(frame.body)))
-        if metadata.name == SESSION_METADATA:
-            text = metadata.metadata[DESCRIPTION_FIELD]
-            if hashlib.sha256(text.encode()).hexdigest() != metadata.metadata[DESCRIPTION_SHA256_KEY]:
-                raise ValueError("the session description has been altered")
-            self.result.description = SessionDescription.model_validate_json(text)
+        self.result.description = description_in(metadata) or self.result.description
         self.result.metadata.append(metadata)
 
     def _index(self, frame: Frame) -> None:
