@@ -18,6 +18,7 @@ from services.gateway.accounts.own import router as own_account
 from services.gateway.accounts.passwords import Passwords
 from services.gateway.accounts.records import has_accounts
 from services.gateway.accounts.routes import router as accounts
+from services.gateway.audit.routes import router as audit
 from services.gateway.audit.trail import AuditTrail
 from services.gateway.clinics.routes import router as clinics
 from services.gateway.context import Gateway
@@ -30,6 +31,9 @@ from services.gateway.health.routes import router as health
 from services.gateway.keys.routes import router as keys
 from services.gateway.live.hub import LiveHub
 from services.gateway.live.routes import router as live_routes
+from services.gateway.monitoring.requests import CountRequests, RequestNumbers
+from services.gateway.monitoring.routes import router as monitoring
+from services.gateway.monitoring.site import site_registry
 from services.gateway.patients.routes import router as patients
 from services.gateway.problems import ProblemOut
 from services.gateway.progress.routes import router as progress
@@ -57,6 +61,7 @@ ROUTERS = (
     keys,
     devices,
     sharing,
+    audit,
     patients,
     roster,
     visits,
@@ -72,6 +77,7 @@ ROUTERS = (
     sources,
     health,
     live_routes,
+    monitoring,
 )
 
 ROUTES = [route for router in ROUTERS for route in router.routes]
@@ -81,6 +87,7 @@ def create_app(settings: GatewaySettings, live: LiveHub, control: Control) -> Fa
     """Put the gateway together. Opens the database; raises DatabaseError when it cannot be used."""
     database = open_database(settings.database_url)
     keeper = SessionKeeper(database, live, live.parameters, settings.clinic)
+    numbers = site_registry(live, database, settings.data_dir)
 
     @asynccontextmanager
     async def lifespan(_: FastAPI) -> AsyncIterator[None]:
@@ -98,7 +105,7 @@ def create_app(settings: GatewaySettings, live: LiveHub, control: Control) -> Fa
         redoc_url=None,
         openapi_url="/v1/openapi.json",
     )
-    app.state.gateway = Gateway(settings, live.parameters, database, keeper, live, control, Passwords())
+    app.state.gateway = Gateway(settings, live.parameters, database, keeper, live, control, Passwords(), numbers)
     problems.install(app)
     check_rules(ROUTES)
     for router in ROUTERS:
@@ -107,6 +114,7 @@ def create_app(settings: GatewaySettings, live: LiveHub, control: Control) -> Fa
     app.add_middleware(AuditTrail, database=database)
     app.add_middleware(BodyLimit, most_bytes=live.parameters.most_body_bytes)
     app.add_middleware(HostNames, names=settings.host_names)
+    app.add_middleware(CountRequests, numbers=RequestNumbers(numbers))
     app.add_middleware(SecurityHeaders)
     app.openapi = lambda: _openapi(app)  # type: ignore[method-assign]
     return app

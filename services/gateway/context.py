@@ -6,6 +6,7 @@ from dataclasses import dataclass, replace
 from typing import Annotated
 
 from fastapi import Depends, Path, Query
+from prometheus_client import CollectorRegistry
 from sqlalchemy.orm import Session
 from starlette.requests import HTTPConnection
 
@@ -31,6 +32,7 @@ class Gateway:
     live: LiveHub
     control: Control
     passwords: Passwords
+    numbers: CollectorRegistry
     caller: Caller | None = None
 
     @property

@@ -6,6 +6,7 @@ from dataclasses import dataclass
 from typing import Any, Literal
 
 from schemas.health import Health, Readiness, Reason
+from services.gateway.health.tally import Tally
 
 SERVICES = ("ingest", "estimation", "segmentation", "metrics", "archive")
 """Services that a working floor needs beside the gateway."""
@@ -28,11 +29,17 @@ class HealthBoard:
     def __init__(self, stale_s: float, clock: Callable[[], float] = time.monotonic) -> None:
         self._stale_s = stale_s
         self._clock = clock
+        self.tally = Tally()
         self._reports: dict[tuple[str, str], Report] = {}
 
     def record(self, health: Health) -> None:
         """A service reported on itself."""
-        self._reports[health.service, health.instance] = Report(health, self._clock())
+        now = self._clock()
+        for key in [key for key, report in self._reports.items() if now - report.received_s >= FORGET_S]:
+            del self._reports[key]
+            self.tally.forget(*key)
+        self._reports[health.service, health.instance] = Report(health, now)
+        self.tally.take(health)
 
     def reports(self) -> list[tuple[Health, float]]:
         """Each instance's last report with its age in s, by name."""

@@ -16,6 +16,7 @@ from services.bus.logs import event
 from services.gateway.access.scope import Scope
 from services.gateway.health.board import HealthBoard
 from services.gateway.live import views
+from services.gateway.live.audience import Audience
 from services.gateway.live.memory import Memory
 from services.gateway.live.viewer import GOING_AWAY, NORMAL, POLICY, Viewer
 from services.gateway.live.views import View
@@ -27,7 +28,7 @@ _CARD_HEAD = ("id", "title", "patient", "task", "estimator", "started_unix_s", "
 _PERIODS = 2
 """Between words on the quality of the data, 5 s each: what is told of a sensor is of the last ten seconds."""
 _CARD_PHASES = 5
-"""As many as a timed up and go has; a six-minute walk has dozens, which no card shows."""
+"""As many as a timed up and go has; of a six-minute walk no card shows more."""
 
 
 class NotLive(LookupError):
@@ -68,6 +69,7 @@ class LiveHub:
         self.parameters = parameters or GatewayParameters()
         self.clock = clock
         self.health = HealthBoard(self.parameters.stale_s, clock)
+        self.audience = Audience()
         self.undecodable = 0
         self._loop: asyncio.AbstractEventLoop | None = None
         self._sessions: dict[str, LiveSession] = {}
@@ -136,6 +138,7 @@ class LiveHub:
             yield viewer
         finally:
             live.viewers.discard(viewer)
+            self.audience.leave(viewer)
             if not live.viewers and live.task is not None:
                 live.task.cancel()
                 live.task = None
@@ -152,6 +155,7 @@ class LiveHub:
             yield viewer
         finally:
             self._floor_viewers.discard(viewer)
+            self.audience.leave(viewer)
             if not self._floor_viewers and self._floor_task is not None:
                 self._floor_task.cancel()
                 self._floor_task = None
@@ -161,10 +165,9 @@ class LiveHub:
         return session in self._sessions
 
     def _new_viewer(self, scope: Scope) -> Viewer:
-        open_now = len(self._floor_viewers) + sum(len(live.viewers) for live in self._sessions.values())
-        if open_now >= self.parameters.most_viewers:
+        if sum(self.audience.sizes().values()) >= self.parameters.most_viewers:
             raise TooManyViewers
-        return Viewer(self.parameters.event_queue, scope)
+        return self.audience.join(Viewer(self.parameters.event_queue, scope))
 
     def _on_loop(self, call: Callable[[], None]) -> None:
         if self._loop is None:
