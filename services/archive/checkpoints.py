@@ -40,6 +40,8 @@ class CheckpointKeeper:
         self._parameters = parameters
         self._kept: dict[Place, tuple[_Head, bytes]] = {}
         self._unwritten: dict[Place, bytes] = {}
+        self._forgotten: set[str] = set()
+        self._writing = False
         self._changed = threading.Condition()
         self._stopping = False
         self._thread = threading.Thread(target=self._run, name="checkpoints", daemon=True)
@@ -53,6 +55,8 @@ class CheckpointKeeper:
             self.refused += 1
             return False
         with self._changed:
+            if session in self._forgotten:
+                return False
             self._keep((session, service), head, data)
             self._unwritten[session, service] = data
             self._changed.notify_all()
@@ -62,6 +66,15 @@ class CheckpointKeeper:
         """The kept checkpoint, from disk after a start; None when there is none that can be read."""
         known = self._find(session, service)
         return known[1] if known else None
+
+    def forget(self, session: str) -> None:
+        """Take and keep nothing more of a session; what is being written is waited for."""
+        with self._changed:
+            self._forgotten.add(session)
+            self._changed.wait_for(lambda: not self._writing)
+            for kept in (self._kept, self._unwritten):
+                for place in [place for place in kept if place[0] == session]:
+                    del kept[place]
 
     def wait(self, timeout_s: float = 5.0) -> bool:
         """Whether everything taken was written within the time."""
@@ -78,6 +91,8 @@ class CheckpointKeeper:
     def _find(self, session: str, service: str) -> tuple[_Head, bytes] | None:
         place = (session, service)
         with self._changed:
+            if session in self._forgotten:
+                return None
             if place in self._kept:
                 return self._kept[place]
             try:
@@ -105,10 +120,11 @@ class CheckpointKeeper:
                 self._changed.wait_for(lambda: self._unwritten or self._stopping)
                 if not self._unwritten:
                     return
-                batch = dict(self._unwritten)
+                batch, self._writing = dict(self._unwritten), True
             for place, data in batch.items():
                 self._write(place, data)
             with self._changed:
+                self._writing = False
                 for place, data in batch.items():
                     if self._unwritten.get(place) is data:
                         del self._unwritten[place]

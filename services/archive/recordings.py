@@ -53,6 +53,7 @@ class Recordings:
     ) -> None:
         self.live: dict[str, LiveSession] = {}
         self.rejections = RejectionCounter()
+        self._erased: set[str] = set()
         self.recorder = Recorder(parameters, lambda closed: loop.post(partial(self._closed, closed)))
         self.sealer = Sealer(f"ambula {version}", disk, parameters)
         self._loop = loop
@@ -74,6 +75,8 @@ class Recordings:
 
     def appear(self, description: SessionDescription) -> None:
         """A session's token is there."""
+        if description.session in self._erased:
+            return
         if description.session in self.live:
             self.live[description.session].gone = False
             return
@@ -97,6 +100,16 @@ class Recordings:
             self._finish(live)
         elif live.phase in (Phase.WAITING, Phase.DONE):
             self._drop(live)
+
+    def forget(self, session: str) -> bool:
+        """Whether the session's folder may be erased: nothing more is written into it. It is never recorded again."""
+        live = self.live.get(session)
+        if live is not None and live.phase is not Phase.DONE:
+            return False
+        if live is not None:
+            self._drop(live)
+        self._erased.add(session)
+        return True
 
     def look(self) -> None:
         """Several times a second: close what has ended, go on with what had to wait for the disk."""

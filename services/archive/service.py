@@ -11,6 +11,7 @@ from schemas.signals import checkpoint_key, command_key, progress_key
 from services.archive.catalogue import Catalogue
 from services.archive.checkpoints import CheckpointKeeper
 from services.archive.disk import Disk
+from services.archive.erasing import Eraser, sweep
 from services.archive.parameters import PARAMETERS, ArchiveParameters
 from services.archive.recordings import Recordings
 from services.archive.sealer import SealJob
@@ -44,11 +45,13 @@ class Archive:
         self._bus = bus
         self._site = bus.settings.site
         self._parameters = parameters
+        sweep(data_dir, disk)
         self._space = Space(data_dir, disk, parameters)
         self._catalogue = Catalogue(data_dir)
         self._keeper = CheckpointKeeper(data_dir, disk, parameters)
         self._recordings = Recordings(self.loop, data_dir, version, parameters, disk, self._space)
         self._stale = StaleFolders(data_dir, version, disk)
+        self._eraser = Eraser(self.loop, data_dir, self._recordings, self._keeper, disk)
         self._slow = False
 
     def run(self) -> int:
@@ -78,6 +81,7 @@ class Archive:
 
     def _declare(self) -> None:
         self._bus.serve(command_key(self._site, "archive", "sessions"), self._answer_sessions)
+        self._bus.serve(command_key(self._site, "archive", "erase"), self._answer_erase)
         self._bus.serve(checkpoint_key(self._site, "*", "*"), self._answer_checkpoint)
         self.loop.subscribe(checkpoint_key(self._site, "*", "*"), self._take_checkpoint)
         self.loop.every(self._parameters.progress_s, self._look)
@@ -112,12 +116,16 @@ class Archive:
             self.loop.background(partial(self._stale.job, folder), self._seal_stale)
 
     def _seal_stale(self, job: SealJob | None) -> None:
-        if job is not None and job.folder.name not in self._recordings.live:
+        if job is not None and job.folder.name not in self._recordings.live and job.folder.is_dir():
             self._recordings.sealer.submit(job)
 
     def _answer_sessions(self, key: str, _parameters: dict[str, str], _body: bytes) -> list[Received]:
         """On a thread of the bus."""
         return [Received(key, b"", self._catalogue.as_json())]
+
+    def _answer_erase(self, key: str, _parameters: dict[str, str], body: bytes) -> list[Received]:
+        """On a thread of the bus."""
+        return [Received(key, b"", self._eraser.answer(body))]
 
     def _answer_checkpoint(self, key: str, _parameters: dict[str, str], _body: bytes) -> list[Received]:
         """On a thread of the bus."""

@@ -352,3 +352,29 @@ def test_what_nobody_has_is_written_and_told_as_a_gap(bus, settings, tmp_path):
     (gap,) = [json.loads(record.payload) for record in records if record.stream.name == "gap/archive"]
     assert (gap["first_sequence"], gap["last_sequence"]) == (newest, newest + 2)
     patient.leave()
+
+
+def test_an_erased_session_is_gone_and_stays_away(bus, settings, tmp_path):
+    """While it is recorded it is left alone; after that it is not recorded again, although its token is still there."""
+    key = command_key("test", "archive", "erase")
+
+    def erase(*sessions):
+        return json.loads(bus.ask(key, body=json.dumps({"sessions": sessions}).encode())[0].payload)["erased"]
+
+    patient, other = Patient(bus, "s1"), Patient(bus, "s2")
+    with archive(settings, tmp_path):
+        until(lambda: (patient.progress and other.progress) or patient.walk(0.05) or other.walk(0.05))
+        assert erase("s1", "unknown", "../s2") == ["unknown"]
+        patient.end()
+        until(lambda: is_closed(tmp_path, "s1", RecordingState.FINISHED))
+        data = Checkpoint(service="metrics", session="s1", captured_ns=5, inputs={}, outputs={}, state={})
+        bus.put(checkpoint_key("test", "s1", "metrics"), data.model_dump_json().encode())
+        until(lambda: erase("s1") == ["s1"])
+        patient.handles.append(bus.declare_token(session_token_key("test", "s1")))
+        bus.put(checkpoint_key("test", "s1", "metrics"), data.model_dump_json().encode())
+        before = other.progress
+        until(lambda: other.progress != before or other.walk(0.05))
+        assert not any(path.name.endswith("s1") for path in tmp_path.iterdir())
+        assert (tmp_path / "s2").is_dir()
+    patient.leave()
+    other.leave()

@@ -4,6 +4,7 @@ The same person reading the same thing again and again, as an open page does, is
 """
 
 import logging
+import re
 from collections import OrderedDict
 from collections.abc import Callable
 from dataclasses import replace
@@ -28,6 +29,8 @@ log = logging.getLogger(__name__)
 SAME_READING_S = 300.0
 MOST_REMEMBERED = 4096
 READING = ("GET", "HEAD")
+AN_ID = re.compile(r"[A-Za-z0-9_.+-]{1,64}")
+A_CODE = re.compile(r"[0-9A-Z]{1,16}")
 
 
 class AuditTrail:
@@ -86,13 +89,15 @@ class AuditTrail:
                     records.append(database, entry)
         except SQLAlchemyError:
             # The database that would hold the entry is the one the answer came from: it has just gone away.
-            log.exception("event=not_audited action=%s outcome=%d", entries[0].action, entries[0].outcome)
+            log.exception(event("not_audited", action=entries[0].action, outcome=entries[0].outcome))
 
 
 def entry_of(scope: Scope, action: str, outcome: int, at: datetime) -> Entry:
     """What is known of a request or socket: who, which patient or session its address names, and what it noted."""
     caller: Caller | None = scope.get("state", {}).get("caller")
-    named, noted = scope.get("path_params", {}), noted_in(scope)
+    # What stands in an address may be anything that somebody typed: only what is written like an id is kept.
+    named = {name: value for name, value in scope.get("path_params", {}).items() if AN_ID.fullmatch(str(value))}
+    code, noted = named.get("code"), noted_in(scope)
     others = [f"{name}={value}" for name, value in named.items() if name not in ("code", "session")]
     return Entry(
         at=at,
@@ -101,7 +106,7 @@ def entry_of(scope: Scope, action: str, outcome: int, at: datetime) -> Entry:
         role=caller.role if caller is not None else None,
         clinic=caller.clinic if caller is not None else None,
         action=action,
-        patient=named.get("code"),
+        patient=code if code is not None and A_CODE.fullmatch(code) else None,
         session=noted.session or named.get("session"),
         object=" ".join([*others, *([noted.object] if noted.object else [])])[:120] or None,
         outcome=outcome,

@@ -2,10 +2,11 @@
 
 from http import HTTPStatus
 
-from fastapi import APIRouter
+from fastapi import APIRouter, Request
 from sqlalchemy.orm import Session
 
 from services.gateway.access.rules import READ, WORK
+from services.gateway.audit.noting import Noted, note
 from services.gateway.context import Context, Limit, Offset, PatientCode
 from services.gateway.patients import records
 from services.gateway.patients.models import PatientChange, PatientIn, PatientOut, PatientPage
@@ -16,10 +17,12 @@ router = APIRouter(prefix="/v1/patients", tags=["patients"])
 
 
 @router.post("", dependencies=WORK, status_code=HTTPStatus.CREATED, responses=documented())
-def create_patient(body: PatientIn, gateway: Context) -> PatientOut:
+def create_patient(body: PatientIn, gateway: Context, request: Request) -> PatientOut:
     """Register a patient; the answer has the random code to write on the chart."""
     with gateway.transaction() as database:
-        return _shape(database, [records.add_patient(database, body)])[0]
+        row = records.add_patient(database, body)
+        note(request, Noted(patients=(row.code,)))
+        return _shape(database, [row])[0]
 
 
 @router.get("", dependencies=READ, responses=documented())

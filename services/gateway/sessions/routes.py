@@ -5,13 +5,14 @@ from datetime import UTC, date, datetime
 from http import HTTPStatus
 from typing import Annotated
 
-from fastapi import APIRouter, Query
+from fastapi import APIRouter, Query, Request
 
 from schemas.metrics import SessionMetrics
 from schemas.session import SessionDescription
 from schemas.vocabulary import Task
 from services.bus.logs import event
 from services.gateway.access.rules import READ, WORK
+from services.gateway.audit.noting import Noted, note
 from services.gateway.context import Context, Gateway, Limit, Offset, SessionId
 from services.gateway.control import ControlRefused, ControlUnavailable, StartRequest
 from services.gateway.patients.records import get_patient, with_known_side
@@ -46,12 +47,13 @@ CHOOSE_SOURCE = "Choose a source from GET /v1/sources."
     status_code=HTTPStatus.CREATED,
     responses=documented(HTTPStatus.NOT_FOUND, HTTPStatus.SERVICE_UNAVAILABLE),
 )
-def start_session(body: SessionIn, gateway: Context) -> SessionOut:
+def start_session(body: SessionIn, gateway: Context, request: Request) -> SessionOut:
     """Store a session and ask an ingest to run it. A session that could not start stays listed as failed.
 
     With a patient, the session knows the rhythms of the patient's previous trial and visit and starts from them.
     """
     session, known, conditions = records.new_session_id(), None, body.conditions
+    note(request, Noted(patients=() if body.patient is None else (body.patient,), session=session))
     clinic = gateway.known_caller.clinic
     with gateway.transaction() as database:
         if body.patient is not None:
@@ -96,8 +98,9 @@ def read_session(session: SessionId, gateway: Context) -> SessionOut:
 
 
 @router.patch("/{session}", dependencies=WORK, responses=documented(HTTPStatus.NOT_FOUND))
-def link_session(session: SessionId, body: SessionLink, gateway: Context) -> SessionOut:
+def link_session(session: SessionId, body: SessionLink, gateway: Context, request: Request) -> SessionOut:
     """Say to whom a session belongs."""
+    note(request, Noted(patients=() if body.patient is None else (body.patient,)))
     with gateway.transaction() as database:
         row = records.get_session(database, session)
         if body.patient is not None:

@@ -116,3 +116,13 @@ def test_many_threads_may_ask_and_give(keeper):
     for thread in threads:
         thread.join()
     assert all(keeper.newest("s1", f"n{number}") == checkpoint(49, service=f"n{number}") for number in range(4))
+
+
+def test_nothing_is_kept_or_written_of_a_session_that_was_erased(keeper, tmp_path):
+    keeper.take("s1", "estimation", checkpoint(1))
+    keeper.take("s2", "estimation", checkpoint(1, session="s2"))
+    keeper.forget("s1")
+    assert not keeper.take("s1", "estimation", checkpoint(2))
+    assert keeper.newest("s1", "estimation") is None
+    assert keeper.newest("s2", "estimation") == checkpoint(1, session="s2")
+    assert keeper.wait()
