@@ -10,6 +10,7 @@ from pathlib import Path
 from typing import Any, Self
 
 from services.gateway.accounts.first_run import code_file
+from services.gateway.certificate import trusting
 
 WORDS = (
     *("amber", "birch", "cedar", "delta", "ember", "fjord", "grove", "heron", "indigo", "juniper", "kestrel", "lagoon"),
@@ -32,21 +33,26 @@ ACCOUNT_FILE = "demo-account"
 
 
 class Door:
-    """One sign-in at one gateway."""
+    """One sign-in at one gateway. `certificate`: that of a gateway that speaks TLS, which is believed alone."""
 
-    def __init__(self, url: str) -> None:
+    def __init__(self, url: str, certificate: Path | None = None) -> None:
         self.url = url
         self._cookies = CookieJar()
-        self._opener = urllib.request.build_opener(urllib.request.HTTPCookieProcessor(self._cookies))
+        handlers: list[urllib.request.BaseHandler] = [urllib.request.HTTPCookieProcessor(self._cookies)]
+        if certificate is not None:
+            handlers.append(urllib.request.HTTPSHandler(context=trusting(certificate)))
+        self._opener = urllib.request.build_opener(*handlers)
 
     @classmethod
-    def of_first_administrator(cls, url: str, data_dir: Path, patience_s: float = 90.0) -> Self:
+    def of_first_administrator(
+        cls, url: str, data_dir: Path, patience_s: float = 90.0, certificate: Path | None = None
+    ) -> Self:
         """Sign in as the administrator that this made at the first run, making it when nobody has an account yet.
 
-        The password lies in the data folder, readable by its owner alone. Raises PermissionError when the accounts
+        The password lies in the gateway's folder, readable by its owner alone. Raises PermissionError when the accounts
         there were made by somebody else.
         """
-        door = cls(url)
+        door = cls(url, certificate)
         state = door.until_answered(patience_s)
         file = data_dir / ACCOUNT_FILE
         if state["first_run"]:

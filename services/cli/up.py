@@ -68,13 +68,13 @@ class _Progress:
 def _tell_how_to_sign_in(gateway: GatewaySettings, *, demo: bool) -> None:
     if demo:
         try:
-            Door.of_first_administrator(gateway.url, gateway.data_dir)
-            login, password = (gateway.data_dir / ACCOUNT_FILE).read_text(encoding="utf-8").split()
+            Door.of_first_administrator(gateway.url, gateway.own_dir, certificate=gateway.http_certificate)
+            login, password = (gateway.own_dir / ACCOUNT_FILE).read_text(encoding="utf-8").split()
             out.print(f"  Sign in as  [bold]{login}[/bold]  with  [bold]{password}[/bold]\n")
         except PermissionError:
             out.print("  Sign in with your account.\n")
-    elif code_file(gateway.data_dir).exists():
-        code = code_file(gateway.data_dir).read_text(encoding="utf-8").strip()
+    elif code_file(gateway.own_dir).exists():
+        code = code_file(gateway.own_dir).read_text(encoding="utf-8").strip()
         out.print(f"  Nobody has an account yet. The code for the first administrator is  [bold]{code}[/bold]\n")
 
 

@@ -3,6 +3,7 @@
 import asyncio
 from collections.abc import AsyncIterator
 from contextlib import asynccontextmanager
+from functools import partial
 from importlib.metadata import version
 from typing import Any
 
@@ -14,6 +15,9 @@ from services.gateway.access.rules import check_rules, described
 from services.gateway.access.scope import EVERYTHING
 from services.gateway.accounts import first_run
 from services.gateway.accounts.administration import router as administration
+from services.gateway.accounts.housekeeping import forget_expired_sign_ins
+from services.gateway.accounts.oidc.routes import OidcServices
+from services.gateway.accounts.oidc.routes import router as oidc
 from services.gateway.accounts.own import router as own_account
 from services.gateway.accounts.passwords import Passwords
 from services.gateway.accounts.records import has_accounts
@@ -28,6 +32,7 @@ from services.gateway.devices.routes import router as devices
 from services.gateway.exports.routes import router as exports
 from services.gateway.fhir.routes import router as fhir
 from services.gateway.health.routes import router as health
+from services.gateway.housekeeping import keep_house
 from services.gateway.keys.routes import router as keys
 from services.gateway.live.hub import LiveHub
 from services.gateway.live.routes import router as live_routes
@@ -56,6 +61,7 @@ DESCRIPTION = "Patients, sessions, metrics and recordings of one Ambula site. Re
 ROUTERS = (
     accounts,
     own_account,
+    oidc,
     administration,
     clinics,
     keys,
@@ -88,11 +94,14 @@ def create_app(settings: GatewaySettings, live: LiveHub, control: Control) -> Fa
     database = open_database(settings.database_url)
     keeper = SessionKeeper(database, live, live.parameters, settings.clinic)
     numbers = site_registry(live, database, settings.data_dir)
+    jobs = {"sign_ins": partial(forget_expired_sign_ins, database, live.parameters)}
 
     @asynccontextmanager
     async def lifespan(_: FastAPI) -> AsyncIterator[None]:
         live.bind(asyncio.get_running_loop())
+        house = asyncio.create_task(keep_house(jobs))
         yield
+        house.cancel()
         await live.stop()
         database.close()
 
@@ -106,6 +115,7 @@ def create_app(settings: GatewaySettings, live: LiveHub, control: Control) -> Fa
         openapi_url="/v1/openapi.json",
     )
     app.state.gateway = Gateway(settings, live.parameters, database, keeper, live, control, Passwords(), numbers)
+    app.state.oidc = OidcServices(settings.oidc)
     problems.install(app)
     check_rules(ROUTES)
     for router in ROUTERS:
@@ -126,7 +136,7 @@ def first_run_code(app: FastAPI) -> str | None:
     with gateway.database.transaction(EVERYTHING) as database:
         if has_accounts(database):
             return None
-    return first_run.write_code(gateway.settings.data_dir)
+    return first_run.write_code(gateway.settings.own_dir)
 
 
 def _openapi(app: FastAPI) -> dict[str, Any]:

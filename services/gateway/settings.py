@@ -1,8 +1,9 @@
 """What differs between installations: addresses and places. Read from the environment, `AMBULA_*`."""
 
 from pathlib import Path
+from typing import Self
 
-from pydantic import Field
+from pydantic import Field, model_validator
 from pydantic_settings import BaseSettings, SettingsConfigDict
 
 from services.gateway.accounts.oidc.settings import OidcProvider, ProviderName
@@ -24,6 +25,10 @@ class GatewaySettings(BaseSettings):
         default=None,
         description="host names a browser may use; unset means the loopback names when listening there, else any",
     )
+    http_certificate: Path | None = Field(
+        default=None, description="certificate chain in PEM format; with it the page is served over TLS alone"
+    )
+    http_key: Path | None = Field(default=None, description="private key of the certificate, PEM format, not encrypted")
     public_url: str = Field(
         default="",
         pattern=r"^(https?://[^/\s]+)?$",
@@ -73,10 +78,21 @@ class GatewaySettings(BaseSettings):
         return self.directory_key_file or self.own_dir / "directory.key"
 
     @property
+    def is_secure(self) -> bool:
+        """Whether the gateway itself speaks TLS."""
+        return self.http_certificate is not None
+
+    @model_validator(mode="after")
+    def _check_pair(self) -> Self:
+        if (self.http_certificate is None) != (self.http_key is None):
+            raise ValueError("AMBULA_HTTP_CERTIFICATE and AMBULA_HTTP_KEY belong together: set both or none")
+        return self
+
+    @property
     def url(self) -> str:
         """What to open in a browser on this machine."""
         host = "127.0.0.1" if self.http_host in ("0.0.0.0", "::") else self.http_host
-        return f"http://{host}:{self.http_port}"
+        return f"{'https' if self.is_secure else 'http'}://{host}:{self.http_port}"
 
     @property
     def host_names(self) -> list[str]:

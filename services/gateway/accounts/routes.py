@@ -51,14 +51,14 @@ def create_first_administrator(body: FirstRunIn, request: Request, response: Res
         account = records.add_account(database, body.login, Role.ADMIN, gateway.settings.clinic, kept, site_admin=True)
         caller = begin_sign_in(database, account, request, response)
         answer = me(database, caller, gateway.settings)
-    first_run.forget_code(gateway.settings.data_dir)
+    first_run.forget_code(gateway.settings.own_dir)
     return answer
 
 
 def _check_first(gateway: Gateway, body: FirstRunIn, has_accounts: bool) -> None:
     if has_accounts:
         raise Problem(HTTPStatus.CONFLICT, "There are accounts already.", "Sign in, or ask an administrator.")
-    if not first_run.is_code(gateway.settings.data_dir, body.code):
+    if not first_run.is_code(gateway.settings.own_dir, body.code):
         raise Problem(
             HTTPStatus.FORBIDDEN, "This is not the code.", "Read it in the terminal where Ambula was started."
         )
