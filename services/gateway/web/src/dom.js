@@ -58,7 +58,18 @@ export function table(columns, body) {
       ? el("th", { scope: "col", class: "number" }, name.slice(0, -1))
       : el("th", { scope: "col" }, name),
   );
-  return el("div", { class: "scroll" }, el("table", {}, el("thead", {}, el("tr", {}, ...cells)), body));
+  const whole = el("table", {}, el("thead", {}, el("tr", {}, ...cells)), body);
+  const scroller = el("div", { class: "scroll" }, whole);
+  const sizes = new ResizeObserver(() => letKeysScroll(scroller));
+  sizes.observe(scroller);
+  sizes.observe(whole);
+  return scroller;
+}
+
+/** What is wider than its place can be scrolled by the keyboard, too. @param {HTMLElement} scroller */
+function letKeysScroll(scroller) {
+  if (scroller.scrollWidth > scroller.clientWidth) scroller.tabIndex = 0;
+  else scroller.removeAttribute("tabindex");
 }
 
 /** Replace everything inside a node. @param {Element} node @param {...(Child | Child[])} children */

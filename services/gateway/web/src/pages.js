@@ -28,8 +28,8 @@
  * @property {Permission | null} permission without which it is not offered; null where nobody has signed in
  * @property {string} [nav] its word among the pages that are always one press away
  * @property {string} [under] the page in the navigation that it belongs to
+ * @property {string} [tab] its word among the pages of the administration
  * @property {boolean} [bare] nothing around it: no navigation, no footer
- * @property {boolean} [ofSite] only for those who manage every clinic of the site
  * @property {() => Promise<{ open: (place: Place) => View }>} load
  */
 
@@ -89,6 +89,51 @@ export const PAGES = [
     nav: "System",
     load: () => import("./system_view.js"),
   },
+  {
+    name: "accounts",
+    pattern: "administration",
+    title: "Accounts",
+    permission: "administer",
+    nav: "Administration",
+    tab: "Accounts",
+    load: () => import("./administration/accounts_view.js"),
+  },
+  {
+    name: "clinics",
+    pattern: "administration/clinics",
+    title: "Clinics",
+    permission: "administer",
+    under: "accounts",
+    tab: "Clinics",
+    load: () => import("./administration/clinics_view.js"),
+  },
+  {
+    name: "keys",
+    pattern: "administration/keys",
+    title: "Keys",
+    permission: "administer",
+    under: "accounts",
+    tab: "Keys",
+    load: () => import("./administration/keys_view.js"),
+  },
+  {
+    name: "devices",
+    pattern: "administration/devices",
+    title: "Devices",
+    permission: "administer",
+    under: "accounts",
+    tab: "Devices",
+    load: () => import("./administration/devices_view.js"),
+  },
+  {
+    name: "audit",
+    pattern: "administration/audit",
+    title: "Audit",
+    permission: "administer",
+    under: "accounts",
+    tab: "Audit",
+    load: () => import("./administration/audit_view.js"),
+  },
 ];
 
 /**
@@ -108,7 +153,7 @@ export function pageOf(hash) {
 /** Whether somebody may see a page. @param {Page} page @param {Me | null} me */
 export function isFor(page, me) {
   if (page.permission === null) return true;
-  return me !== null && me.may.includes(page.permission) && (!page.ofSite || me.site_admin);
+  return me?.may.includes(page.permission) ?? false;
 }
 
 /**
