@@ -29,6 +29,8 @@ from services.gateway.context import Gateway
 from services.gateway.control import Control
 from services.gateway.database import open_database
 from services.gateway.devices.routes import router as devices
+from services.gateway.directory.routes import router as names
+from services.gateway.directory.store import NameDirectory
 from services.gateway.exports.routes import router as exports
 from services.gateway.fhir.routes import router as fhir
 from services.gateway.health.routes import router as health
@@ -69,6 +71,7 @@ ROUTERS = (
     sharing,
     audit,
     patients,
+    names,
     roster,
     visits,
     progress,
@@ -93,6 +96,7 @@ def create_app(settings: GatewaySettings, live: LiveHub, control: Control) -> Fa
     """Put the gateway together. Opens the database; raises DatabaseError when it cannot be used."""
     database = open_database(settings.database_url)
     keeper = SessionKeeper(database, live, live.parameters, settings.clinic)
+    directory = NameDirectory(settings.directory_url, settings.directory_key)
     numbers = site_registry(live, database, settings.data_dir)
     jobs = {"sign_ins": partial(forget_expired_sign_ins, database, live.parameters)}
 
@@ -103,6 +107,7 @@ def create_app(settings: GatewaySettings, live: LiveHub, control: Control) -> Fa
         yield
         house.cancel()
         await live.stop()
+        directory.close()
         database.close()
 
     app = FastAPI(
@@ -114,7 +119,9 @@ def create_app(settings: GatewaySettings, live: LiveHub, control: Control) -> Fa
         redoc_url=None,
         openapi_url="/v1/openapi.json",
     )
-    app.state.gateway = Gateway(settings, live.parameters, database, keeper, live, control, Passwords(), numbers)
+    app.state.gateway = Gateway(
+        settings, live.parameters, database, keeper, live, control, Passwords(), numbers, directory
+    )
     app.state.oidc = OidcServices(settings.oidc)
     problems.install(app)
     check_rules(ROUTES)

@@ -15,6 +15,7 @@ from services.gateway.access.identify import Identified
 from services.gateway.accounts.passwords import Passwords
 from services.gateway.control import Control
 from services.gateway.database import Database
+from services.gateway.directory.store import NameDirectory
 from services.gateway.live.hub import LiveHub
 from services.gateway.parameters import GatewayParameters
 from services.gateway.sessions.keeper import SessionKeeper
@@ -33,6 +34,7 @@ class Gateway:
     control: Control
     passwords: Passwords
     numbers: CollectorRegistry
+    directory: NameDirectory
     caller: Caller | None = None
 
     @property

@@ -24,7 +24,7 @@ class Database:
     """Engine and session factory. Used from many threads."""
 
     def __init__(self, url: str) -> None:
-        self.engine = _engine(url)
+        self.engine = new_engine(url)
         self._sessions = sessionmaker(self.engine, expire_on_commit=False)
         event.listen(self._sessions, "do_orm_execute", narrow)
         event.listen(self._sessions, "before_flush", check_rows)
@@ -88,7 +88,8 @@ def open_database(url: str) -> Database:
     return database
 
 
-def _engine(url: str) -> Engine:
+def new_engine(url: str) -> Engine:
+    """For a URL, with SQLite set up as everything here needs it."""
     engine = create_engine(url, pool_pre_ping=True, hide_parameters=True)
     if engine.dialect.name == "sqlite":
         event.listen(engine, "connect", _set_up_sqlite)

@@ -63,3 +63,6 @@ class GatewayParameters:
 
     longest_lock_s: float = 3600.0
     """s that an account is closed at most, so that nobody can be shut out for good."""
+
+    most_names_searched: int = 20_000
+    """Number of the newest patients whose names a search looks through: opening one takes 15 us."""
