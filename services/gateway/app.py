@@ -46,6 +46,7 @@ from services.gateway.problems import ProblemOut
 from services.gateway.progress.routes import router as progress
 from services.gateway.recordings.routes import router as recordings
 from services.gateway.references.routes import router as references
+from services.gateway.replay.routes import router as replay
 from services.gateway.report.routes import router as reports
 from services.gateway.roster.routes import router as roster
 from services.gateway.security import BodyLimit, HostNames, SecurityHeaders
@@ -80,6 +81,7 @@ ROUTERS = (
     reports,
     sessions,
     recordings,
+    replay,
     exports,
     versions,
     fhir,

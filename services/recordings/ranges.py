@@ -51,6 +51,12 @@ class RecordedRanges:
         self._files: dict[Path, FileIndex] = {path: read_index(path) for path in paths}
         self.description: SessionDescription = _description(paths[0])
 
+    @property
+    def end_ns(self) -> int:
+        """Time of the newest message of any signal, ns of session time."""
+        newest = (chunk.message_end_time for index in self._files.values() for chunk in index.chunks)
+        return captured_ns(self.description, max(newest, default=self.description.started_unix_ns))
+
     def find(self, signal: Signal, from_ns: int, to_ns: int) -> list[Found]:
         """Messages of a signal with from <= captured time < to, ns of session time, by that time.
 

@@ -1,4 +1,4 @@
-"""A few seconds out of a session, found by the index: the same messages as by reading everything, and no others read."""
+"""A few seconds out of a session, found by the index: the messages that reading everything gives, and no others read."""
 
 import pytest
 

@@ -1,0 +1,1 @@
+"""A session that is over, moment by moment, out of its recording."""
