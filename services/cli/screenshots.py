@@ -82,7 +82,7 @@ def _take_sessions(camera: "_Camera", settings: BusSettings) -> None:
     camera.take("live_exercise", f"/#/sessions/{exercise}", lambda: live_now() and shown(".counter dd", "/min"))
     camera.take("live", f"/#/sessions/{lower_body}", lambda: live_now() and not shown(".numbers td", "–"))
     camera.take("live_six_minutes", f"/#/sessions/{corridor}", lambda: live_now() and shown(".walk-strip dd", " m"))
-    camera.take("sessions", "/", lambda: shown(".card .chip", "Live"))
+    camera.take("sessions", "/", lambda: shown(".card .light", "Good"))
     camera.remember("report-level", "measured")
     camera.take("report_timed", f"/#/sessions/{timed}", lambda: finished() and shown("th", "Walk back"))
     camera.take("report_body", f"/#/sessions/{squats}", lambda: finished() and shown("th", "Knee flexion range"))

@@ -4,6 +4,9 @@ import { el, say } from "./dom.js";
 import { SIDES } from "./vectors.js";
 import { degrees, number } from "./units.js";
 
+const BAND =
+  "The band is two standard deviations to either side of the estimate. Ticks below: contact of a foot with its letter, toe-off dotted.";
+
 export class ChartPanel {
   constructor({ joint, title, range, sides = SIDES }) {
     this.joint = joint;
@@ -18,6 +21,7 @@ export class ChartPanel {
         "div",
         { class: "panel-head" },
         el("h2", {}, title),
+        el("span", { class: "quiet", title: BAND }, "± 2 SD"),
         el("span", { class: "spring" }),
         ...this.now,
       ),

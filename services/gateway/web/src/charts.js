@@ -120,7 +120,7 @@ export class RollingChart {
     });
   }
 
-  /** A contact of a foot: a tick with its letter at the foot of the chart. */
+  /** A contact of a foot: a tick with its letter at the foot of the chart; a toe-off: a dotted one. */
   mark(event) {
     this.contacts.push(event);
   }
@@ -160,13 +160,15 @@ export class RollingChart {
     pen.textAlign = "center";
     for (const { side, event, at_s } of this.contacts) {
       const x = chart.valToPos(at_s - this.now, "x", true);
-      if (event !== "initial_contact" || x < bbox.left || x > bbox.left + bbox.width) continue;
+      if (x < bbox.left || x > bbox.left + bbox.width) continue;
+      const isContact = event === "initial_contact";
       pen.strokeStyle = pen.fillStyle = SIDE_COLOUR[side];
+      pen.setLineDash(isContact ? [] : [1.5 * devicePixelRatio, 2 * devicePixelRatio]);
       pen.beginPath();
       pen.moveTo(x, bbox.top + bbox.height);
       pen.lineTo(x, bbox.top + bbox.height - 9 * devicePixelRatio);
       pen.stroke();
-      pen.fillText(side === "left" ? "L" : "R", x, bbox.top + bbox.height - 12 * devicePixelRatio);
+      if (isContact) pen.fillText(side === "left" ? "L" : "R", x, bbox.top + bbox.height - 12 * devicePixelRatio);
     }
     pen.restore();
   }

@@ -1,5 +1,6 @@
 // One of a few, chosen by mouse or arrow keys and remembered on this screen.
 import { el } from "./dom.js";
+import { recall, remember } from "./screen_memory.js";
 
 /** A row of choices: `options` by value, `onChoose` with the value; `chosen` is what was chosen last time. */
 export class Choices {
@@ -32,22 +33,5 @@ export class Choices {
   reword(label, options) {
     this.legend.textContent = label;
     for (const [value, text] of Object.entries(options)) this.texts[value].textContent = text;
-  }
-}
-
-// A browser may forbid a page to keep anything; then nothing is remembered.
-function recall(name) {
-  try {
-    return localStorage.getItem(`ambula.${name}`);
-  } catch {
-    return null;
-  }
-}
-
-function remember(name, value) {
-  try {
-    localStorage.setItem(`ambula.${name}`, value);
-  } catch {
-    // See above.
   }
 }

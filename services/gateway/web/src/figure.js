@@ -12,7 +12,7 @@ const LETTER_FROM_TOE = [0.08, 0.03, 0];
 const LABEL = { ahead: 0.2, apart: 0.1 };
 
 /** Vector seen from the world, of a vector seen from the segment. */
-export function rotate([w, x, y, z], [a, b, c]) {
+export function rotate([w, x, y, z], /** @type {number[]} */ [a, b, c]) {
   const tx = 2 * (y * c - z * b);
   const ty = 2 * (z * a - x * c);
   const tz = 2 * (x * b - y * a);

@@ -25,6 +25,7 @@ export class LiveNumbers {
       ...row,
       left: el("td", { class: "number" }, "–"),
       right: el("td", { class: "number" }, "–"),
+      node: el("tr"),
     }));
     this.heads = {
       left: el("th", { scope: "col", class: "number left" }, "Left"),
@@ -33,7 +34,7 @@ export class LiveNumbers {
     const head = el("tr", {}, el("th", { scope: "col" }, "Last stride"), this.heads.left, this.heads.right);
     const rows = this.cells.map((row) => {
       const unit = row.unit ? el("span", { class: "unit" }, ` ${row.unit}`) : null;
-      row.node = el("tr", {}, el("th", { scope: "row" }, row.name, unit), row.left, row.right);
+      row.node.append(el("th", { scope: "row" }, row.name, unit), row.left, row.right);
       return row.node;
     });
     this.node = el(

@@ -4,24 +4,25 @@ import { arrangementOf } from "./arrangement.js";
 import { CameraPanel } from "./camera_panel.js";
 import { UNCALIBRATED } from "./camera_words.js";
 import { ChartPanel } from "./chart_panel.js";
-import { el, fill, say } from "./dom.js";
-import { figureOf } from "./figure.js";
+import { el, fill, say, tell } from "./dom.js";
+import { FeedbackDialog } from "./feedback_dialog.js";
 import { KneePanel } from "./knee_panel.js";
 import { LiveSocket } from "./live_socket.js";
 import { LiveNumbers } from "./live_numbers.js";
 import { PatientLink } from "./patient_link.js";
 import { RepetitionCounter } from "./repetition_counter.js";
-import { SensorList } from "./sensor_list.js";
+import { SensorPanel } from "./sensor_panel.js";
 import { SessionControls } from "./session_controls.js";
-import { Skeleton2d } from "./skeleton2d.js";
-import { Skeleton3d, canDraw3d } from "./skeleton3d.js";
+import { Shortcuts, fullScreenButton, toggleFullScreen } from "./shortcuts.js";
+import { SkeletonPanel } from "./skeleton_panel.js";
+import { SymmetryStrip } from "./symmetry_strip.js";
 import { clock } from "./units.js";
 import { stripOf } from "./task_strips.js";
-import { SIDES } from "./vectors.js";
 import { STALE_S, lastData, misplacedText, stateOf } from "./words.js";
 
 export class LiveView {
   constructor(host, session, { onEnd }) {
+    this.host = host;
     this.session = session;
     this.segments = {};
     this.sensors = [];
@@ -32,6 +33,8 @@ export class LiveView {
     this.age = null;
     this.status = null;
     this.open = false;
+    this.phase = this.message = this.atS = null;
+    this.absolute = true;
     this.numbers = new LiveNumbers();
     this.build(host);
     this.socket = new LiveSocket(`/${session.id}`, {
@@ -50,63 +53,61 @@ export class LiveView {
     this.warning = el("p", { class: "banner warning", role: "alert", hidden: true });
     this.link = new PatientLink(this.session);
     this.controls = new SessionControls(this.session, {
-      onTrouble: (text) => this.advise(text),
+      onTrouble: (text) => tell(this.advice, text),
       newest: () => this.atS,
     });
     this.title = el("h1", { title: this.session.title }, this.session.title);
-    this.stage = el("div", { class: "stage" });
-    this.sensorList = new SensorList();
-    this.views = el("div", { class: "views", role: "group", "aria-label": "View from" });
+    this.body = new SkeletonPanel(this.session.conditions?.paretic_side);
+    this.sensorPanel = new SensorPanel();
     this.curves = el("div", { class: "curves" });
     this.strip = null;
     this.counter = new RepetitionCounter();
-    this.strides = el("section", { class: "panel numbers-panel", "aria-label": "Numbers" }, this.numbers.node);
-    this.key = el("p", { class: "key" });
-    this.showKey(SIDES);
-    fill(
-      host,
+    this.symmetry = new SymmetryStrip(this.session.conditions?.paretic_side);
+    this.strides = el(
+      "section",
+      { class: "panel numbers-panel", "aria-label": "Numbers" },
+      this.numbers.node,
+      this.symmetry.node,
+    );
+    this.live = el(
+      "div",
+      { class: "live" },
+      this.body.node,
+      this.curves,
+      el("div", { class: "side-column" }, this.counter.node, this.strides, this.sensorPanel.node),
+    );
+    fill(host, this.head(), this.advice, this.warning, this.live, this.feedback.dialog, this.shortcuts.dialog);
+  }
+
+  head() {
+    this.feedback = new FeedbackDialog(this.session);
+    this.shortcuts = new Shortcuts([
+      { key: "M", does: "Mark: standing now", run: () => this.controls.mark() },
+      { key: "P", does: "Screen for the patient", run: () => this.feedback.open() },
+      { key: "G", does: "Next ghost: none, best stride, previous stride", run: () => this.body.nextGhost() },
+      { key: "1", does: "First view of the body", run: () => this.body.lookNth(0) },
+      { key: "2", does: "Second view", run: () => this.body.lookNth(1) },
+      { key: "3", does: "Third view", run: () => this.body.lookNth(2) },
+      { key: "F", does: "Full screen, and back", run: () => toggleFullScreen(this.host) },
+    ]);
+    return el(
+      "div",
+      { class: "session-head" },
+      this.title,
+      this.word,
+      this.elapsed,
+      this.ageText,
+      el("span", { class: "spring" }),
+      this.link.node,
+      this.controls.node,
       el(
-        "div",
-        { class: "session-head" },
-        this.title,
-        this.word,
-        this.elapsed,
-        this.ageText,
-        el("span", { class: "spring" }),
-        this.link.node,
-        this.controls.node,
+        "span",
+        { class: "actions" },
+        el("button", { type: "button", class: "for-patient", onclick: () => this.feedback.open() }, "Patient screen"),
+        fullScreenButton(() => toggleFullScreen(this.host)),
+        this.shortcuts.button,
       ),
-      this.advice,
-      this.warning,
-      (this.live = el(
-        "div",
-        { class: "live" },
-        el(
-          "section",
-          { class: "panel body-panel", "aria-label": "Skeleton" },
-          this.views,
-          this.stage,
-          this.key,
-        ),
-        this.curves,
-        el("div", { class: "side-column" }, this.counter.node, this.strides, this.sensorList.node),
-      )),
     );
-    const calm = matchMedia("(prefers-reduced-motion: reduce)").matches;
-    this.skeleton = calm || !canDraw3d() ? new Skeleton2d(this.stage) : new Skeleton3d(this.stage);
-  }
-
-  offerViews(views) {
-    const buttons = Object.entries(views).map(([view, name]) =>
-      el("button", { type: "button", onclick: (event) => this.look(view, event.currentTarget) }, name),
-    );
-    fill(this.views, ...buttons);
-    this.look(Object.keys(views)[0], buttons[0]);
-  }
-
-  look(view, button) {
-    for (const other of button.parentElement.children) other.setAttribute("aria-pressed", other === button);
-    this.skeleton.look(view);
   }
 
   on(message) {
@@ -115,7 +116,7 @@ export class LiveView {
 
   handlers = {
     session(message) {
-      this.body = { ...message.body, floor_m: message.cameras[0]?.floor_m ?? null };
+      this.lengths = { ...message.body, floor_m: message.cameras[0]?.floor_m ?? null };
       this.arrange(message);
       this.segments = Object.fromEntries(message.sensors.map((sensor) => [sensor.name, sensor.segment]));
       this.link.show(message.patient);
@@ -124,7 +125,7 @@ export class LiveView {
       this.misplaced = calibration.misplaced;
       this.absolute = calibration.absolute;
       this.warn();
-      this.sensorList.showDatum(calibration.datum);
+      this.sensorPanel.showDatum(calibration.datum);
       this.camera?.showCalibration(calibration);
     },
     patient(message) {
@@ -137,17 +138,15 @@ export class LiveView {
       this.cameras = pose.cameras;
       this.heard(pose.age_s);
       say(this.elapsed, clock(pose.at_s));
-      this.advise([pose.notice, pose.phase === "estimating" ? pose.message : ""].filter(Boolean).join(". "));
+      tell(this.advice, [pose.notice, pose.phase === "estimating" ? pose.message : ""].filter(Boolean).join(". "));
       this.warn();
       this.atS = pose.at_s;
-      const figure = this.body && figureOf(pose, this.body);
-      if (figure) this.skeleton.show(figure, kneeAngles(pose));
-      else if (this.camera) this.skeleton.clear();
+      this.body.show(pose, this.lengths, Boolean(this.camera));
       for (const chart of this.charts) chart.add(pose, pose.trail);
       for (const panel of this.panels) panel.add(pose, pose.trail);
       this.strip?.show(pose.at_s);
       this.numbers.onPose(pose);
-      this.sensorList.show(pose.sensors, this.segments);
+      this.sensorPanel.show(pose.sensors, this.segments, pose.at_s);
       this.tick();
     },
     status(status) {
@@ -161,6 +160,11 @@ export class LiveView {
     stride(stride) {
       this.strip?.onStride?.(stride);
       this.numbers.onStride(stride);
+      this.symmetry.onStride(stride);
+      this.body.onStride(stride);
+    },
+    data_quality(quality) {
+      this.sensorPanel.onQuality(quality);
     },
     task_phase(phase) {
       this.strip?.onPhase(phase);
@@ -176,20 +180,22 @@ export class LiveView {
   /** Once it is known what is worn and what is to be done: show that, and nothing that cannot be. */
   arrange(session) {
     if (this.arranged) return;
-    const { charts, sides, views, counted, legs, wholeBody } = (this.arranged = arrangementOf(session));
+    const arranged = (this.arranged = arrangementOf(session));
+    const { charts, sides, counted, legs, wholeBody } = arranged;
     this.strip = stripOf(session);
     if (this.strip) this.live.prepend(this.strip.node);
     this.counter.node.hidden = !counted;
     this.strides.hidden = counted;
-    this.sensorList.node.hidden = session.sensors.length === 0;
-    this.offerViews(views);
+    this.symmetry.node.hidden = sides.length < 2;
+    this.sensorPanel.node.hidden = session.sensors.length === 0;
+    this.body.arrange(arranged);
+    this.feedback.arrange(arranged, session);
     this.charts = charts.map((chart) => new ChartPanel(chart));
     this.curves.append(...this.charts.map((chart) => chart.node));
     for (const chart of this.charts) chart.start();
     if (legs) this.showLegsAlone(legs);
     if (session.task === "marching") this.numbers.onTheSpot();
     if (wholeBody) this.showWholeBody(wholeBody, session.cameras);
-    this.showKey(sides);
   }
 
   showLegsAlone(legs) {
@@ -204,14 +210,9 @@ export class LiveView {
     this.camera = new CameraPanel(cameras);
     this.panels.push(angles, this.camera);
     this.counter.showWholeBody(wholeBody);
-    this.sensorList.node.before(angles.node, this.camera.node);
-    this.views.append(el("span", { class: "spring" }), this.camera.chips);
+    this.sensorPanel.node.before(angles.node, this.camera.node);
+    this.body.views.append(this.camera.chips);
     this.live.classList.add("whole-body");
-  }
-
-  showKey(sides) {
-    const names = sides.map((side) => el("b", { class: side }, side === "left" ? "L left" : "R right"));
-    fill(this.key, ...names, el("span", {}, "grey: not known now"), el("span", {}, "pale: not measured"));
   }
 
   heard(age_s) {
@@ -225,7 +226,6 @@ export class LiveView {
 
   tick() {
     const age_s = this.currentAge();
-    const silent = this.status?.silent ?? [];
     const { word, tone } = stateOf({
       age_s,
       phase: this.phase,
@@ -234,49 +234,32 @@ export class LiveView {
       cameras: this.cameras,
       segments: this.segments,
       misplaced: this.misplaced,
-      silent,
+      silent: this.status?.silent ?? [],
+      preparing: this.status?.preparing,
+      recording_stopped: this.status?.recording_stopped,
       heard: this.open && (this.status?.connected ?? false),
     });
     say(this.word, word);
     this.word.dataset.tone = tone;
     say(this.ageText, lastData(age_s));
     const stale = age_s === null || age_s > STALE_S;
-    this.skeleton.setStale(stale);
     for (const chart of this.charts) chart.node.classList.toggle("stale", stale);
-    this.sensorList.tick(stale);
-    this.numbers.tick(stale);
-    for (const panel of this.panels) panel.tick(stale);
+    for (const part of [this.body, this.sensorPanel, this.numbers, this.symmetry, ...this.panels]) part.tick(stale);
     this.strip?.node.classList.toggle("stale", stale);
   }
 
   /** What is worn otherwise than declared or not calibrated, unless the estimator's own message says what to do. */
   warn() {
     const found = [misplacedText(this.misplaced), this.absolute === false ? UNCALIBRATED : ""];
-    const warning = this.message ? "" : found.filter(Boolean).join(" ");
-    say(this.warning, warning);
-    this.warning.hidden = warning === "";
-  }
-
-  advise(text) {
-    say(this.advice, text);
-    this.advice.hidden = text === "";
+    tell(this.warning, this.message ? "" : found.filter(Boolean).join(" "));
   }
 
   dispose() {
     clearInterval(this.timer);
     this.socket.close();
-    this.skeleton.dispose();
+    this.body.dispose();
+    this.shortcuts.dispose();
+    this.feedback.dispose();
     for (const chart of this.charts) chart.dispose();
   }
-}
-
-/** Angle of each knee that is known, with one standard deviation; rad. */
-function kneeAngles(pose) {
-  const known = SIDES.filter((side) => pose.angles[`knee_flexion_${side}`] !== undefined);
-  return Object.fromEntries(
-    known.map((side) => {
-      const name = `knee_flexion_${side}`;
-      return [side, { value: pose.angles[name], std: pose.angles_std[name] ?? 0 }];
-    }),
-  );
 }

@@ -66,6 +66,14 @@ export const PAGES = [
     load: () => import("./session_view.js"),
   },
   {
+    name: "feedback",
+    pattern: "feedback/:session",
+    title: "Your movement",
+    permission: "read",
+    bare: true,
+    load: () => import("./feedback_view.js"),
+  },
+  {
     name: "patients",
     pattern: "patients",
     title: "Patients",

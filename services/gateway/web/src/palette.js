@@ -26,6 +26,8 @@ export const PHASE_COLOURS = {
 export const CHANGE_BAND = "#E9EDF0";
 export const PANEL = "#FFFFFF";
 export const GHOST = "#DDE4E7";
+/** Another stride beside the person's own: of neither side. */
+export const GHOST_INK = "#6A4C93";
 
 /** `#rrggbb` with an alpha for bands. */
 export const faint = (colour, alpha) =>

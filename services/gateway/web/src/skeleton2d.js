@@ -1,6 +1,7 @@
 // The side view on paper: without WebGL, for print, and for people who asked for less motion.
 import { svg } from "./dom.js";
 import { kneeFan } from "./figure.js";
+import { Ghost2d } from "./ghost2d.js";
 import { GHOST, INVALID, PELVIS, SIDE_COLOUR } from "./palette.js";
 import { PaperTrunk } from "./paper_trunk.js";
 import { Stage } from "./stage.js";
@@ -33,6 +34,7 @@ export class Skeleton2d {
     this.legs = Object.fromEntries(SIDES.map((side) => [side, this.leg(side)]));
     this.upper = new PaperTrunk(this.body);
     this.pelvis = this.line(PELVIS, 12);
+    this.ghost = new Ghost2d(this.body);
     host.append(this.root);
   }
 
@@ -73,7 +75,7 @@ export class Skeleton2d {
     if (this.last) this.show(this.last, this.angles);
   }
 
-  show(figure, angles = {}) {
+  show(figure, angles = {}, ghost = null) {
     this.last = figure;
     this.body.removeAttribute("display");
     this.angles = angles;
@@ -99,6 +101,7 @@ export class Skeleton2d {
       this.showAngle(figure, side, figure.whole ? undefined : angles[side]);
     }
     this.showSeat(figure);
+    this.ghost.show(ghost, (point) => this.project(point));
   }
 
   showAngle(figure, side, angle) {
@@ -131,7 +134,7 @@ export class Skeleton2d {
     this.seat.setAttribute("height", Math.max(0, height * this.scale));
   }
 
-  project([x, y, z]) {
+  project(/** @type {number[]} */ [x, y, z]) {
     const cos = Math.cos(this.stage.heading);
     const sin = Math.sin(this.stage.heading);
     const [fromX, fromZ] = this.stage.standpoint;

@@ -17,6 +17,7 @@ import {
 import { OrbitControls } from "three/examples/jsm/controls/OrbitControls.js";
 
 import { BONES, HEAD_RADIUS_M, JOINTS } from "./bones.js";
+import { Ghost3d } from "./ghost3d.js";
 import { KneeLabels } from "./knee_labels.js";
 import { between, kneeFan } from "./figure.js";
 import { GHOST, INVALID, SIDE_COLOUR } from "./palette.js";
@@ -51,6 +52,7 @@ export class Skeleton3d {
     this.view = "side";
     this.furnish();
     this.buildBody();
+    this.ghost = new Ghost3d(this.body);
     this.controls.addEventListener("change", () => this.wake());
     this.resizing = new ResizeObserver(() => this.resize());
     this.resizing.observe(host);
@@ -104,8 +106,9 @@ export class Skeleton3d {
     const shown = this.shownHeight(this.frameOf.width);
     const distance = shown / 2 / Math.tan((VIEW_ANGLE_DEG * Math.PI) / 360);
     const target = new Vector3(0, middle, 0);
+    const [x, y, z] = DIRECTIONS[from];
     this.camera.position
-      .set(...DIRECTIONS[from])
+      .set(x, y, z)
       .normalize()
       .multiplyScalar(distance)
       .add(target);
@@ -127,9 +130,11 @@ export class Skeleton3d {
     this.camera.updateProjectionMatrix();
   }
 
-  /** The newest figure; drawn over the next frame's time from where the last one was. `angles` are of its knees, rad. */
-  show(figure, angles = {}) {
+  /** The newest figure, drawn over the next frame's time from where the last one was. `angles` are of its knees, rad;
+   * `ghost` is another stride's figure. */
+  show(figure, angles = {}, ghost = null) {
     const now = performance.now() / 1000;
+    this.ghost.show(ghost, now);
     const frame = figure.inRoom ? FRAMES.room : figure.whole ? FRAMES.body : FRAMES.legs;
     if (frame !== this.frameOf) {
       this.frameOf = frame;
@@ -162,7 +167,7 @@ export class Skeleton3d {
     this.resizing.disconnect();
     cancelAnimationFrame(this.frame);
     this.controls.dispose();
-    this.scene.traverse((node) => {
+    this.scene.traverse((/** @type {any} */ node) => {
       node.geometry?.dispose();
       node.material?.map?.dispose();
       node.material?.dispose();
@@ -188,6 +193,7 @@ export class Skeleton3d {
     if (figure) {
       this.stage.follow(figure, Math.min(0.1, now - (this.drawn ?? now)));
       this.place(figure);
+      this.ghost.place(now);
       this.zoom();
       if (now - this.since < FRAME_S) this.wake();
     }

@@ -197,6 +197,7 @@ function judge(now) {
     return {
       word: `Delayed (${age_s < 100 ? age_s.toFixed(1) : Math.round(age_s)} s)`,
       tone: age_s > 5 ? "lost" : "check",
+      light: age_s > 5 ? "Lost" : "Delayed",
     };
   }
   if (now.recording_stopped) return { word: NOT_RECORDED[now.recording_stopped], tone: "lost", light: "Not recording" };
