@@ -45,7 +45,7 @@ class Passwords:
     def keep(self, password: str) -> str:
         """What the database holds of a password. Raises TooManyPasswords."""
         with self._turn():
-            return self._hasher.hash(password)
+            return self._hasher.hash(_bytes(password))
 
     def fits(self, find_kept: Callable[[], str | None], password: str) -> bool:
         """Whether it is the password that `find_kept`, called when it is this one's turn, finds in the database.
@@ -55,7 +55,7 @@ class Passwords:
         with self._turn():
             kept = find_kept()
             try:
-                return self._hasher.verify(kept or self._nobodys, password) and kept is not None
+                return self._hasher.verify(kept or self._nobodys, _bytes(password)) and kept is not None
             except (VerifyMismatchError, InvalidHashError):
                 return False
 
@@ -77,6 +77,11 @@ def weakness(password: str, login: str) -> str | None:
     if len(set(password)) < FEWEST_DIFFERENT:
         return f"it has fewer than {FEWEST_DIFFERENT} different letters"
     return None
+
+
+def _bytes(password: str) -> bytes:
+    # JSON can carry halves of characters, which are no text; as a password they are as good as anything.
+    return password.encode("utf-8", "surrogatepass")
 
 
 def _hash_of_nobody(hasher: PasswordHasher) -> str:
