@@ -215,14 +215,17 @@ def bench(
 @app.command()
 def doctor(
     service: Annotated[str | None, typer.Option(help="only: is this service alive? Exit code 0 or 1")] = None,
+    deep: Annotated[bool, typer.Option("--deep", help="also compare the checksum of every recording")] = False,
 ) -> None:
     """Check this machine and the running services; say what to do where something is missing."""
-    from services.cli.doctor import MARKS, examine, service_is_alive
+    from services.cli.doctor.examine import examine
+    from services.cli.doctor.findings import MARKS
+    from services.cli.doctor.stack import service_is_alive
 
     if service is not None:
         raise typer.Exit(0 if service_is_alive(service) else 1)
     table = Table(show_header=False)
-    findings = list(examine())
+    findings = list(examine(deep=deep))
     for finding in findings:
         table.add_row(MARKS[finding.ok], finding.subject, finding.says)
     out.print(table)

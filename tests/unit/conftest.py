@@ -1,8 +1,13 @@
 """A small session and the recording of it, for whatever reads or writes recordings."""
 
+from datetime import UTC, datetime, timedelta
 from types import SimpleNamespace
 
 import pytest
+from cryptography import x509
+from cryptography.hazmat.primitives import hashes, serialization
+from cryptography.hazmat.primitives.asymmetric import ec
+from cryptography.x509.oid import NameOID
 
 from schemas.session import Anthropometry, HubDescription, Placement, SensorDescription, SessionDescription
 from schemas.signals import GAIT_EVENT, IMU, JOINT_STATE
@@ -96,3 +101,30 @@ def recorded(tmp_path, description):
         return folder
 
     return run
+
+
+@pytest.fixture(scope="session")
+def make_pair(tmp_path_factory):
+    """Writes a self-signed certificate and its key; their paths."""
+
+    def make(days=60.0, name="clinic.example", password=None):
+        now = datetime.now(UTC)
+        folder = tmp_path_factory.mktemp("certificate")
+        key = ec.generate_private_key(ec.SECP256R1())
+        subject = x509.Name([x509.NameAttribute(NameOID.COMMON_NAME, name)])
+        made = (
+            x509.CertificateBuilder()
+            .subject_name(subject).issuer_name(subject).public_key(key.public_key())
+            .serial_number(x509.random_serial_number())
+            .not_valid_before(now - timedelta(days=100)).not_valid_after(now + timedelta(days=days))
+            .add_extension(x509.SubjectAlternativeName([x509.DNSName(name)]), critical=False)
+            .sign(key, hashes.SHA256())
+        )  # fmt: skip
+        lock = serialization.BestAvailableEncryption(password) if password else serialization.NoEncryption()
+        pem, form = serialization.Encoding.PEM, serialization.PrivateFormat.PKCS8
+        paths = folder / "certificate.pem", folder / "key.pem"
+        paths[0].write_bytes(made.public_bytes(pem))
+        paths[1].write_bytes(key.private_bytes(pem, form, lock))
+        return paths
+
+    return make

@@ -1,45 +1,23 @@
-"""`ambula doctor`: is everything here that Ambula needs, and if not, what to do."""
+"""What the machine must have: Python, space, the page, ports."""
 
 import os
 import shutil
 import sys
 from collections.abc import Iterator
-from dataclasses import dataclass
 from pathlib import Path
 
-from schemas.signals import service_token_key
 from services.archive.settings import ArchiveSettings
-from services.bus.connection import Bus, BusUnavailable
-from services.bus.settings import BusSettings
+from services.cli.doctor.findings import Finding
 from services.ingest.capture.settings import CaptureSettings
 from services.ingest.data import find_data_root
 
 LEAST_FREE_BYTES = 5 * 1024**3
 
 
-@dataclass(frozen=True, slots=True)
-class Finding:
-    """One line of the report. `ok` None: not needed, but it would be nicer."""
-
-    subject: str
-    ok: bool | None
-    says: str
-
-
-def examine() -> Iterator[Finding]:
-    """All findings about this machine and, when one runs, about the stack."""
+def findings() -> Iterator[Finding]:
+    """All of them."""
     for check in (_python, _disk, _page, _browser, _recordings, _cameras):
         yield check()
-    yield from _stack()
-
-
-def service_is_alive(service: str) -> bool:
-    """Whether a service of that name holds its token on the configured router."""
-    try:
-        with Bus.open(BusSettings(), "doctor") as bus:
-            return bool(bus.tokens(service_token_key(bus.settings.site, service, "*")))
-    except BusUnavailable:
-        return False
 
 
 def _python() -> Finding:
@@ -51,11 +29,11 @@ def _disk() -> Finding:
     folder = ArchiveSettings().data_dir
     existing = next(path for path in (folder.resolve(), *folder.resolve().parents) if path.exists())
     free = shutil.disk_usage(existing).free
-    writable = os.access(existing, os.W_OK)
-    says = f"{free / 1024**3:.0f} GiB free for recordings in {folder}"
-    if not writable:
+    if not os.access(existing, os.W_OK):
         return Finding("Disk", False, f"{existing} is not writable; set AMBULA_DATA_DIR to a folder that is")
-    return Finding("Disk", free >= LEAST_FREE_BYTES, says)
+    says = f"{free / 1024**3:.0f} GiB free for recordings in {folder}"
+    ok = free >= LEAST_FREE_BYTES
+    return Finding("Disk", ok, says if ok else f"{says}; make room: recording stops at 1 GiB")
 
 
 def _page() -> Finding:
@@ -87,17 +65,3 @@ def _cameras() -> Finding:
     if settings.is_open_to_all:
         return Finding("Cameras", None, f"{says}, from any computer; name those that may in AMBULA_SKELETON_SENDERS")
     return Finding("Cameras", True, says)
-
-
-def _stack() -> Iterator[Finding]:
-    settings = BusSettings()
-    try:
-        with Bus.open(settings, "doctor") as bus:
-            for name in ("ingest", "estimation", "segmentation", "metrics", "archive", "gateway"):
-                alive = len(bus.tokens(service_token_key(settings.site, name, "*")))
-                yield Finding(name, alive > 0, f"{alive} running" if alive else "not running")
-    except BusUnavailable:
-        yield Finding("Stack", None, f"no router at {settings.router}; `ambula up` starts one")
-
-
-MARKS: dict[bool | None, str] = {True: "[green]ok[/green]", False: "[red]fix[/red]", None: "[yellow]note[/yellow]"}
