@@ -4,7 +4,7 @@ from typing import Annotated, Literal
 
 from pydantic import BaseModel, ConfigDict, Field
 
-from schemas.vocabulary import GaitEventKind, JointCentre, Segment, SensorState, Side
+from schemas.vocabulary import CameraKind, GaitEventKind, JointCentre, Segment, SensorState, Side, Task
 from services.gateway.sessions.models import PhaseOut
 
 Vector = Annotated[list[float], Field(min_length=3, max_length=3)]
@@ -13,6 +13,52 @@ Session = Annotated[str, Field(description="session id", examples=["8d0c2a71f04b
 Next = Annotated[
     float | None, Field(description="s, `from_s` of the next page; null at the end of the session", examples=[10.0])
 ]
+
+
+class WornOut(BaseModel):
+    """An inertial sensor of the session."""
+
+    model_config = ConfigDict(extra="forbid")
+
+    name: str = Field(examples=["shank_left"])
+    segment: Segment
+    rate_hz: float = Field(gt=0, description="nominal sample rate, Hz")
+
+
+class WatchingOut(BaseModel):
+    """A camera of the session."""
+
+    model_config = ConfigDict(extra="forbid")
+
+    name: str = Field(examples=["kinect"])
+    kind: CameraKind
+    rate_hz: float = Field(gt=0, description="nominal frame rate, Hz")
+    floor_m: float | None = Field(description="m, height of the floor, negative below the camera; null: not known")
+
+
+class BodyOut(BaseModel):
+    """Lengths that the figure is drawn with."""
+
+    model_config = ConfigDict(extra="forbid")
+
+    thigh_length_m: float = Field(gt=0, description="m, hip centre to knee centre")
+    shank_length_m: float = Field(gt=0, description="m, knee centre to ankle centre")
+    hip_width_m: float = Field(gt=0, description="m, between the hip centres")
+
+
+class RecordedOut(BaseModel):
+    """What the recording of a session says of how it was made."""
+
+    model_config = ConfigDict(extra="forbid")
+
+    session: Session
+    task: Task
+    walkway_m: float | None = Field(description="m from start to turning point of a timed test; else null")
+    estimator: str = Field(examples=["rhythmic_ekf"])
+    sensors: list[WornOut]
+    cameras: list[WatchingOut]
+    body: BodyOut
+    end_s: float = Field(ge=0, description="s of session time of the newest recorded message", examples=[60.0])
 
 
 class BoneOut(BaseModel):

@@ -11,10 +11,10 @@ from fastapi.responses import StreamingResponse
 from schemas.kinematics import LivePose
 from services.gateway.access.rules import READ
 from services.gateway.context import Context, Offset, SessionId
-from services.gateway.live.views import View, encode, pose_view
+from services.gateway.live.views import View, encode, pose_view, session_view
 from services.gateway.problems import Problem, documented
 from services.gateway.replay import events
-from services.gateway.replay.models import EventsOut, PosesOut, StridePage
+from services.gateway.replay.models import EventsOut, PosesOut, RecordedOut, StridePage
 from services.gateway.replay.poses import Wanted, poses
 from services.gateway.replay.recording import opened
 from services.gateway.replay.strides import stride_page
@@ -59,6 +59,15 @@ class Stretch:
 
 
 Asked = Annotated[Stretch, Depends()]
+
+
+@router.get("/recorded", dependencies=READ, responses=PROBLEMS)
+def read_recorded(session: SessionId, gateway: Context) -> RecordedOut:
+    """What was worn, on which body, what was to be done, and how long the recording is."""
+    with opened(gateway, session) as recording:
+        shown = session_view(recording.description, None)
+        asked = {name: shown[name] for name in ("task", "walkway_m", "estimator", "sensors", "cameras", "body")}
+        return RecordedOut(session=session, end_s=recording.end_ns / 1e9, **asked)
 
 
 @router.get("/poses", dependencies=READ, response_model=PosesOut, responses=PROBLEMS)
