@@ -1,4 +1,4 @@
-// Words for how a test was done and for whom results are compared: the same in the start dialog and on every page.
+// Words for how a test was done and for whom results are compared: the same where a session is started and on every page.
 
 export const AIDS = {
   none: "No aid",

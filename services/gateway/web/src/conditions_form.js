@@ -17,7 +17,7 @@ const OF_TASK = {
   six_minute_walk: ["test_duration_s"],
 };
 
-/** The fields of a start dialog that say how: `node` for the task's own, `worn` for the fold-out. */
+/** The fields that say how a test is done: `node` for the task's own, `worn` for the fold-out. */
 export class ConditionsForm {
   constructor() {
     this.walkway = metres("walkway", 0.5);
@@ -68,6 +68,13 @@ export class ConditionsForm {
     this.walkway.placeholder = walkway?.placeholder ?? "";
     for (const [name, node] of Object.entries(this.own)) node.hidden = !(OF_TASK[task] ?? []).includes(name);
     this.node.hidden = !walkway && !(task in OF_TASK);
+  }
+
+  /** Say beside the field when the timed part ends before it begins. */
+  compare() {
+    const { timed_from_m: from, timed_to_m: to } = this.inputs;
+    const wrong = from.value !== UNSAID && to.value !== UNSAID && Number(to.value) <= Number(from.value);
+    to.setCustomValidity(wrong ? "The timed part ends after it begins: give a larger distance." : "");
   }
 
   /** m, or null for what the source says. */
