@@ -31,6 +31,7 @@ NEEDED = [
 
 SERVICES = ["archive", "estimation", "segmentation", "metrics", "gateway", "ingest"]
 PATIENCE_S = 90
+AS_SOURCE = "As the source says"
 
 COLOURS = """
 const done = arguments[arguments.length - 1];
@@ -102,22 +103,45 @@ def text(page: Chrome, selector: str) -> str:
     return found[0].text if found else ""
 
 
-def choose_source(page: Chrome, kind: str) -> None:
-    """The button, then a source."""
+def onward(page: Chrome, to: str) -> None:
+    """Next, or Begin; `to` is the heading of the step that follows."""
+    page.find_element(By.CSS_SELECTOR, ".start-step button[type=submit]").click()
+    wait(page, lambda: text(page, ".start-step h2") == to, f"the step: {to}")
+
+
+def choose_protocol(page: Chrome, task: str = AS_SOURCE) -> None:
+    """The button, no patient yet, then what will be done."""
     page.find_element(By.ID, "start").click()
-    wait(page, lambda: kind in text(page, "#source"), "the sources are offered")
-    Select(page.find_element(By.ID, "source")).select_by_visible_text(kind)
+    wait(page, lambda: text(page, ".start-step h2") == "Whose session is it?", "the first step")
+    onward(page, "What will be done?")
+    page.find_element(By.XPATH, f"//fieldset//label[normalize-space()='{task}']").click()
+
+
+def choose_source(page: Chrome, kind: str, task: str = AS_SOURCE) -> None:
+    """All steps up to a source."""
+    choose_protocol(page, task)
+    choose_measuring(page, kind)
+
+
+def choose_measuring(page: Chrome, kind: str) -> None:
+    """From the protocol to a source."""
+    onward(page, "What measures?")
+    source = page.find_element(By.ID, "source")
+    wait(page, lambda: kind in source.text, "the sources are offered")
+    Select(source).select_by_visible_text(kind)
 
 
 def confirm(page: Chrome) -> None:
-    """Start."""
-    page.find_element(By.CSS_SELECTOR, "dialog button[type=submit]").click()
+    """Begin, and straight on to the live page."""
+    onward(page, "Calibration")
+    page.find_element(By.CSS_SELECTOR, ".start-step button[type=submit]").click()
     wait(page, lambda: "#/sessions/" in page.current_url, "the session opens")
 
 
 def start(page: Chrome, url: str, kind: str = "Walk, comfortable speed", speed: str = "Real time") -> None:
-    """As a person would: the button, a source, a speed, Start."""
+    """As a person would: the button, a source, a speed, Begin."""
     page.get(url)
+    wait(page, lambda: page.find_elements(By.ID, "start"), "the page is there")
     choose_source(page, kind)
     Select(page.find_element(By.ID, "speed")).select_by_visible_text(speed)
     confirm(page)

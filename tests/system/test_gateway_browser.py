@@ -150,16 +150,18 @@ def test_one_knee_is_one_leg_with_its_angle_and_a_report_of_its_own(site):
 def test_with_reduced_motion_the_leg_is_drawn_on_paper_and_the_task_can_be_chosen(site):
     with browsers.open_browser(1366, 768, "--force-prefers-reduced-motion") as page:
         browsers.admit(page, site.door)
-        page.get(site.url)
-        pages.choose_source(page, KNEE)
-        assert [
-            group.get_attribute("label") for group in page.find_elements(By.CSS_SELECTOR, "#estimator optgroup")
-        ] == ["Sensors: single knee"]
+        page.get(f"{site.url}/#/")
+        wait(page, lambda: page.find_elements(By.ID, "start"), "the page is there")
+        pages.choose_protocol(page)
         assert not page.find_element(By.ID, "walkway").is_displayed()
-        Select(page.find_element(By.ID, "task")).select_by_visible_text("Timed up and go")
+        page.find_element(By.CSS_SELECTOR, "input[name=task][value=timed_up_and_go]").click()
         walkway = page.find_element(By.ID, "walkway")
         assert walkway.is_displayed()
         walkway.send_keys("3")
+        pages.choose_measuring(page, KNEE)
+        assert [
+            group.get_attribute("label") for group in page.find_elements(By.CSS_SELECTOR, "#estimator optgroup")
+        ] == ["Sensors: single knee"]
         Select(page.find_element(By.ID, "speed")).select_by_visible_text(QUICK)
         pages.confirm(page)
         wait(page, lambda: live(page), "the session is live")

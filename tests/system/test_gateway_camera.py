@@ -2,7 +2,6 @@
 
 from selenium.webdriver import Chrome
 from selenium.webdriver.common.by import By
-from selenium.webdriver.support.ui import Select
 
 from services.cli import browser as browsers
 from tests.system import pages
@@ -53,14 +52,15 @@ def test_squats_before_a_camera_are_seen_counted_and_reported_on_both_sides(site
 def test_who_walks_out_of_the_camera_s_view_is_not_drawn_on_paper_either(site):
     with browsers.open_browser(1366, 768, "--force-prefers-reduced-motion") as page:
         browsers.admit(page, site.door)
-        page.get(site.url)
-        pages.choose_source(page, "Leaning forward, camera")
+        page.get(f"{site.url}/#/")
+        wait(page, lambda: page.find_elements(By.ID, "start"), "the page is there")
+        pages.choose_source(page, "Leaning forward, camera", task="Squat")
         assert [
             group.get_attribute("label") for group in page.find_elements(By.CSS_SELECTOR, "#estimator optgroup")
         ] == ["Camera: whole body"]
-        tasks = [each.text for each in Select(page.find_element(By.ID, "task")).options]
-        assert "Squat" in tasks
-        assert "Timed up and go" not in tasks
+        sources = page.find_element(By.ID, "source").text
+        assert "Squats with the arms raised, camera" in sources
+        assert "Timed up and go" not in sources
         assert not page.find_element(By.ID, "walk-path").is_displayed()
         away = begin(site.door, "synthetic:tilt_forward?person=2&noise=0.3&repetitions=200&away_at=30&away_for=600")
         page.get(f"{site.url}/#/sessions/{away}")
