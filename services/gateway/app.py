@@ -45,6 +45,7 @@ from services.gateway.patients.routes import router as patients
 from services.gateway.problems import ProblemOut
 from services.gateway.progress.routes import router as progress
 from services.gateway.recordings.routes import router as recordings
+from services.gateway.recycling.routes import router as recycling
 from services.gateway.references.routes import router as references
 from services.gateway.replay.routes import router as replay
 from services.gateway.report.routes import router as reports
@@ -73,6 +74,7 @@ ROUTERS = (
     audit,
     patients,
     names,
+    recycling,
     roster,
     visits,
     progress,

@@ -7,7 +7,7 @@ from typing import Any
 
 from alembic import command
 from alembic.config import Config
-from sqlalchemy import Engine, create_engine, event, make_url, text
+from sqlalchemy import Engine, MetaData, create_engine, event, make_url, text
 from sqlalchemy.orm import Session, sessionmaker
 
 from services.gateway.access.guard import check_rows
@@ -24,7 +24,7 @@ class Database:
     """Engine and session factory. Used from many threads."""
 
     def __init__(self, url: str) -> None:
-        self.engine = new_engine(url)
+        self.engine = _engine(url)
         self._sessions = sessionmaker(self.engine, expire_on_commit=False)
         event.listen(self._sessions, "do_orm_execute", narrow)
         event.listen(self._sessions, "before_flush", check_rows)
@@ -88,8 +88,18 @@ def open_database(url: str) -> Database:
     return database
 
 
-def new_engine(url: str) -> Engine:
-    """For a URL, with SQLite set up as everything here needs it."""
+def open_apart(url: str, tables: MetaData) -> Database:
+    """Connect to a database with a few tables of its own, made when they are not there, for its owner alone."""
+    file = make_url(url).database if make_url(url).get_backend_name() == "sqlite" else None
+    if file:
+        Path(file).parent.mkdir(parents=True, exist_ok=True)
+        Path(file).touch(mode=0o600)
+    database = Database(url)
+    tables.create_all(database.engine)
+    return database
+
+
+def _engine(url: str) -> Engine:
     engine = create_engine(url, pool_pre_ping=True, hide_parameters=True)
     if engine.dialect.name == "sqlite":
         event.listen(engine, "connect", _set_up_sqlite)

@@ -66,3 +66,6 @@ class GatewayParameters:
 
     most_names_searched: int = 20_000
     """Number of the newest patients whose names a search looks through: opening one takes 15 us."""
+
+    bin_days: int = 30
+    """Days that what was deleted can be brought back."""

@@ -32,6 +32,11 @@ class Caller:
         """What of the database exists for this caller."""
         return Scope(self.clinic, self.shared)
 
+    @property
+    def bin(self) -> Scope:
+        """What the caller's clinic has deleted."""
+        return Scope(self.clinic, in_bin=True)
+
     def may(self, permission: Permission) -> bool:
         """Whether the role has the permission."""
         return self.role in MAY[permission]

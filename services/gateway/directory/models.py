@@ -34,7 +34,7 @@ class SearchIn(BaseModel):
 
     model_config = ConfigDict(extra="forbid")
 
-    text: str = Field(min_length=2, max_length=100, description="words of name or record number, in any order")
+    text: str = Field(min_length=2, max_length=100, description="words of name or record number", examples=["erika"])
 
 
 class CodesIn(BaseModel):

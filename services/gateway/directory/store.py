@@ -2,13 +2,15 @@
 
 import threading
 from collections.abc import Iterable, Iterator, Sequence
+from contextlib import contextmanager
 from datetime import UTC, datetime
 from pathlib import Path
 
-from sqlalchemy import Engine, LargeBinary, String, delete, event, func, make_url, select, text
+from sqlalchemy import LargeBinary, String, delete, func, select
 from sqlalchemy.orm import DeclarativeBase, Mapped, Session, mapped_column
 
-from services.gateway.database import new_engine
+from services.gateway.access.scope import EVERYTHING
+from services.gateway.database import Database, open_apart
 from services.gateway.directory.cipher import Cipher, DirectoryUnusable, Name, make_key, read_key
 from services.gateway.tables import UtcTime
 
@@ -38,7 +40,7 @@ class NameDirectory:
     def __init__(self, url: str, key_file: Path) -> None:
         self._url = url
         self._key_file = key_file
-        self._engine: Engine | None = None
+        self._database: Database | None = None
         self._lock = threading.Lock()
 
     def place_of(self, code: str) -> str | None:
@@ -48,66 +50,55 @@ class NameDirectory:
 
     def put(self, code: str, name: Name) -> None:
         """Keep a name in place of any other."""
-        with self._session() as session:
-            cipher = self._cipher(session) or Cipher(self._new_key())
+        with self._names() as names:
+            cipher = self._cipher(names) or Cipher(self._new_key())
             row = NameRow(place=cipher.place_of(code), sealed=cipher.seal(code, name), changed=datetime.now(UTC))
-            session.merge(row)
-            session.commit()
+            names.merge(row)
 
     def find(self, codes: Iterable[str]) -> Iterator[tuple[str, Name]]:
         """The names of those that have one."""
-        with self._session() as session:
-            cipher = self._cipher(session)
+        with self._names() as names:
+            cipher = self._cipher(names)
             if cipher is None:
                 return
             for some in _portions(codes):
                 places = {cipher.place_of(code): code for code in some}
-                for row in session.scalars(select(NameRow).where(NameRow.place.in_(places))):
+                for row in names.scalars(select(NameRow).where(NameRow.place.in_(places))):
                     code = places[row.place]
                     yield code, cipher.open(code, row.sealed)
 
-    def remove(self, places: Sequence[str]) -> int:
-        """Forget entries by where they stand, for good; how many there were."""
-        removed = 0
-        with self._session() as session:
+    def remove(self, places: Iterable[str]) -> int:
+        """Forget entries by where they stand; how many there were."""
+        with self._names() as names:
+            removed = 0
             for some in _portions(places):
-                gone = session.execute(delete(NameRow).where(NameRow.place.in_(some)).returning(NameRow.place))
+                gone = names.execute(delete(NameRow).where(NameRow.place.in_(some)).returning(NameRow.place))
                 removed += len(gone.all())
-            session.commit()
-        return removed
+            return removed
 
     def scrub(self) -> None:
         """Leave nothing of what was removed in the files of SQLite."""
-        engine = self._opened()
-        if engine.dialect.name == "sqlite":
-            with engine.connect().execution_options(isolation_level="AUTOCOMMIT") as connection:
-                connection.execute(text("VACUUM"))
-                connection.execute(text("PRAGMA wal_checkpoint(TRUNCATE)"))
+        self._opened().scrub()
 
     def close(self) -> None:
         """Close every connection."""
-        if self._engine is not None:
-            self._engine.dispose()
+        if self._database is not None:
+            self._database.close()
 
-    def _session(self) -> Session:
-        return Session(self._opened())
+    @contextmanager
+    def _names(self) -> Iterator[Session]:
+        with self._opened().transaction(EVERYTHING) as names:
+            yield names
 
-    def _opened(self) -> Engine:
+    def _opened(self) -> Database:
         with self._lock:
-            if self._engine is None:
-                address = make_url(self._url)
-                if address.get_backend_name() == "sqlite" and address.database:
-                    Path(address.database).parent.mkdir(parents=True, exist_ok=True)
-                engine = new_engine(self._url)
-                if engine.dialect.name == "sqlite":
-                    event.listen(engine, "connect", lambda *_: _only_for_us(address.database))
-                _Base.metadata.create_all(engine)
-                self._engine = engine
-            return self._engine
+            if self._database is None:
+                self._database = open_apart(self._url, _Base.metadata)
+            return self._database
 
-    def _cipher(self, session: Session) -> Cipher | None:
+    def _cipher(self, names: Session) -> Cipher | None:
         secret = read_key(self._key_file)
-        if secret is None and session.scalar(select(func.count()).select_from(NameRow)):
+        if secret is None and names.scalar(select(func.count()).select_from(NameRow)):
             raise DirectoryUnusable("The key of the directory is gone; restore its file from a backup.")
         return None if secret is None else Cipher(secret)
 
@@ -116,12 +107,7 @@ class NameDirectory:
             return read_key(self._key_file) or make_key(self._key_file)
 
 
-def _portions(items: Iterable[str]) -> Iterator[tuple[str, ...]]:
+def _portions(items: Iterable[str]) -> Iterator[Sequence[str]]:
     left = list(items)
     for start in range(0, len(left), ASKED_AT_ONCE):
-        yield tuple(left[start : start + ASKED_AT_ONCE])
-
-
-def _only_for_us(file: str | None) -> None:
-    if file and Path(file).exists():
-        Path(file).chmod(0o600)
+        yield left[start : start + ASKED_AT_ONCE]

@@ -1,0 +1,1 @@
+"""The bin: what was deleted, until its time is over or it is brought back."""
