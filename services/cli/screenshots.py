@@ -83,9 +83,8 @@ def _take_sessions(camera: "_Camera", settings: BusSettings) -> None:
     camera.take("live", f"/#/sessions/{lower_body}", lambda: live_now() and not shown(".numbers td", "–"))
     camera.take("live_six_minutes", f"/#/sessions/{corridor}", lambda: live_now() and shown(".walk-strip dd", " m"))
     camera.take("sessions", "/", lambda: shown(".card .light", "Good"))
-    camera.remember("report-level", "measured")
-    camera.take("report_timed", f"/#/sessions/{timed}", lambda: finished() and shown("th", "Walk back"))
-    camera.take("report_body", f"/#/sessions/{squats}", lambda: finished() and shown("th", "Knee flexion range"))
+    camera.take("report_timed", f"/#/sessions/{timed}/curves", lambda: finished() and shown("th", "Walk back"))
+    camera.take("report_body", f"/#/sessions/{squats}/curves", lambda: finished() and shown("th", "Knee flexion range"))
     camera.take("system", "/#/system", lambda: shown("tbody", "imu/"))
     camera.take("api", "/docs", lambda: shown("#api", "/v1/sessions"))
 
@@ -124,7 +123,7 @@ class _Camera:
         return self.shown(".session-head .chip", "Live") and not any(each.is_displayed() for each in grey)
 
     def is_finished(self) -> bool:
-        return self.shown(".session-head .chip", "Finished") and self.shown(".files", "raw")
+        return self.shown(".session-head .chip", "Finished")
 
 
 def _recorded() -> list[str]:

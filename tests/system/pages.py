@@ -154,6 +154,15 @@ def read(page: Chrome, choice: str) -> None:
     page.find_element(By.XPATH, option).click()
 
 
+def part(page: Chrome, name: str) -> None:
+    """Open a part of a session that is over by its word, e.g. Replay."""
+    link = f"//nav[contains(@class, 'parts-nav')]/a[normalize-space()='{name}']"
+    wait(page, lambda: page.find_elements(By.XPATH, link), f"{name} is offered")
+    page.find_element(By.XPATH, link).click()
+    current = f"{link}[@aria-current='page']"
+    wait(page, lambda: page.find_elements(By.XPATH, current), f"{name} is opened")
+
+
 def keep(page: Chrome, name: str) -> None:
     """A picture for whoever wants to look: AMBULA_SCREENSHOTS names the folder."""
     folder = os.environ.get("AMBULA_SCREENSHOTS")

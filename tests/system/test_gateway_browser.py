@@ -8,13 +8,13 @@ from selenium.webdriver.support.ui import Select
 
 from services.cli import browser as browsers
 from tests.system import pages
-from tests.system.pages import begin, colours, keep, live, read, seen, shown, start, text, wait
+from tests.system.pages import begin, colours, keep, live, part, seen, shown, start, text, wait
 
 pytestmark = pages.NEEDED
 
 KNEE = "Walk, left knee alone"
 QUICK = "Five times as fast"
-MEASURED = "Measurements and files"
+MEASURED = "Curves and numbers"
 
 
 def numbers(page: Chrome) -> list[str]:
@@ -46,9 +46,10 @@ def test_a_session_started_on_the_page_walks_fills_the_table_and_ends_in_a_repor
     wait(page, lambda: text(page, ".session-head .chip") == "Finished", "the session ends")
     wait(page, lambda: "m/s" in text(page, ".sheet"), "the report")
     keep(page, "report")
-    read(page, MEASURED)
+    part(page, MEASURED)
     wait(page, lambda: len(shown(page, ".mean-curves canvas")) == 2, "the mean curves")
     wait(page, lambda: "Walking speed" in text(page, "section[aria-label='Every number']"), "the numbers")
+    part(page, "Files")
     wait(page, lambda: page.refresh() or "raw" in text(page, ".files"), "the recording can be fetched")
 
     assert browsers.complaints(page) == []
@@ -138,7 +139,7 @@ def test_one_knee_is_one_leg_with_its_angle_and_a_report_of_its_own(site):
 
         page.find_element(By.CSS_SELECTOR, "button.danger").click()
         wait(page, lambda: text(page, ".session-head .chip") == "Finished", "the session ends")
-        read(page, MEASURED)
+        part(page, MEASURED)
         wait(page, lambda: shown(page, ".mean-curves h2") == ["Knee flexion"], "the knee's mean curve alone")
         heads = "section[aria-label='Every number'] thead th"
         wait(page, lambda: shown(page, heads)[:2] == ["Number", "Left"], "that leg's numbers")
@@ -181,7 +182,7 @@ def test_a_timed_test_is_reported_by_its_parts_and_an_exercise_by_its_repetition
     exercise = begin(site.door, "synthetic:knee?duration=30&seed=2", speed=None)
     page.get(f"{site.url}/#/sessions/{timed}")
     wait(page, lambda: text(page, ".session-head .chip") == "Finished", "the timed test ends")
-    read(page, MEASURED)
+    part(page, MEASURED)
     drawing = "section[aria-label='Timed up and go'] svg"
     wait(page, lambda: page.find_elements(By.CSS_SELECTOR, f"{drawing} rect"), "the bar is drawn")
     assert len(page.find_elements(By.CSS_SELECTOR, f"{drawing} rect")) == 5
@@ -190,7 +191,7 @@ def test_a_timed_test_is_reported_by_its_parts_and_an_exercise_by_its_repetition
     assert "in all" in told
     assert shown(page, "section[aria-label='Timed up and go'] tbody th") == ["Attempt 1"]
 
-    page.get(f"{site.url}/#/sessions/{exercise}")
+    page.get(f"{site.url}/#/sessions/{exercise}/curves")
     wait(page, lambda: text(page, ".session-head .chip") == "Finished", "the exercise ends")
     bars = "section[aria-label=Repetitions] svg rect"
     wait(page, lambda: len(page.find_elements(By.CSS_SELECTOR, bars)) > 3, "the repetitions are drawn")

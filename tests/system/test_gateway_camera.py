@@ -36,7 +36,7 @@ def test_squats_before_a_camera_are_seen_counted_and_reported_on_both_sides(site
 
     page.find_element(By.CSS_SELECTOR, "button.danger").click()
     wait(page, lambda: text(page, ".session-head .chip") == "Finished", "the session ends")
-    pages.read(page, "Measurements and files")
+    pages.part(page, "Curves and numbers")
     bars = "section[aria-label=Repetitions] svg rect"
     wait(page, lambda: len(page.find_elements(By.CSS_SELECTOR, bars)) >= 3, "the repetitions are drawn")
     rows = page.find_elements(By.CSS_SELECTOR, "section[aria-label=Repetitions] tbody tr")

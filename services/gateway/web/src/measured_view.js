@@ -1,9 +1,8 @@
-// What a report rests on: attempts, repetitions and curves to look into, every number, and the files.
+// What a report rests on: attempts, repetitions and curves to look into, and every number.
 import { get } from "./api.js";
 import { isExercise } from "./arrangement.js";
 import { MeanChart } from "./charts.js";
 import { el, svg } from "./dom.js";
-import { FilesPanel } from "./files_panel.js";
 import { numbersTable } from "./numbers_table.js";
 import { SIDE_COLOUR, SIDE_DASH } from "./palette.js";
 import { PhaseTimeline, attemptsOf, phaseTable } from "./phase_timeline.js";
@@ -25,9 +24,8 @@ export class MeasuredView {
     this.session = session;
     this.charts = [];
     this.drawn = el("div", { class: "column" });
-    this.files = new FilesPanel(session);
     this.numbers = el("div");
-    this.node = el("div", { class: "column" }, this.drawn, this.files.node, this.numbers);
+    this.node = el("div", { class: "column" }, this.drawn, this.numbers);
     this.load();
   }
 

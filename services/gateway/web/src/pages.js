@@ -59,7 +59,7 @@ export const PAGES = [
   },
   {
     name: "session",
-    pattern: "sessions/:session",
+    pattern: "sessions/:session/:part?",
     title: "Session",
     permission: "read",
     under: "floor",
