@@ -5,6 +5,7 @@ from typing import Self
 
 from pydantic import Field, model_validator
 from pydantic_settings import BaseSettings, SettingsConfigDict
+from sqlalchemy import make_url
 
 from services.gateway.accounts.oidc.settings import OidcProvider, ProviderName
 
@@ -38,6 +39,9 @@ class GatewaySettings(BaseSettings):
         default_factory=dict, description="sign-in services of the organisation (OpenID Connect), by name"
     )
     database: str = Field(default="", description="SQLAlchemy URL; empty for a SQLite file in the data folder")
+    database_password_file: Path | None = Field(
+        default=None, description="file with the database's password, for a URL without one"
+    )
     data_dir: Path = Field(default=Path("data"), description="the folder with the archive's recordings")
     gateway_dir: Path | None = Field(
         default=None,
@@ -60,7 +64,10 @@ class GatewaySettings(BaseSettings):
         """The URL to connect to; plain PostgreSQL addresses are given the driver that is installed."""
         if not self.database:
             return f"sqlite:///{self.data_dir / 'ambula.sqlite'}"
-        return _with_driver(self.database)
+        if self.database_password_file is None:
+            return _with_driver(self.database)
+        password = self.database_password_file.read_text(encoding="utf-8").strip()
+        return make_url(_with_driver(self.database)).set(password=password).render_as_string(hide_password=False)
 
     @property
     def own_dir(self) -> Path:

@@ -18,7 +18,9 @@ BANNED = {"utils", "util", "helpers", "helper", "common", "misc", "manager"}
 
 
 def compose() -> dict:
-    return yaml.safe_load((ROOT / "compose.yaml").read_text())["services"]
+    """What runs by itself; services of a profile are run by hand."""
+    services = yaml.safe_load((ROOT / "compose.yaml").read_text())["services"]
+    return {name: service for name, service in services.items() if "profiles" not in service}
 
 
 def test_every_process_is_here():
@@ -58,6 +60,21 @@ def test_compose_shares_recordings_with_one_writer():
         name: mount for name in PROCESSES for mount in compose()[name].get("volumes", []) if "recordings:" in mount
     }
     assert [name for name, mount in mounts.items() if not mount.endswith(":ro")] == ["archive"]
+
+
+def test_compose_has_no_password_in_the_environment():
+    text = (ROOT / "compose.yaml").read_text()
+    assert "PASSWORD:" not in text
+    assert "database_password" in compose()["gateway"]["secrets"]
+    for service in compose().values():
+        values = service.get("environment", {}).values()
+        assert not [value for value in values if re.search(r"://[^/@]+:[^/@]+@", str(value))]
+
+
+def test_the_gateway_of_compose_writes_its_own_folder_alone():
+    gateway = compose()["gateway"]
+    own = gateway["environment"]["AMBULA_GATEWAY_DIR"]
+    assert [mount for mount in gateway["volumes"] if not mount.endswith(":ro")] == [f"gateway:{own}"]
 
 
 def test_every_producer_is_a_process():

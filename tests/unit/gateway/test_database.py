@@ -117,3 +117,10 @@ def test_the_address_of_the_database(given, used, monkeypatch):
     monkeypatch.delenv("AMBULA_DATABASE", raising=False)
     monkeypatch.delenv("AMBULA_DATA_DIR", raising=False)
     assert GatewaySettings(database=given).database_url == used
+
+
+def test_the_database_s_password_comes_from_a_file_where_its_address_has_none(tmp_path):
+    secret = tmp_path / "password"
+    secret.write_text("p@ss/word\n")
+    settings = GatewaySettings(database="postgresql://ambula@host/db", database_password_file=secret)
+    assert settings.database_url == "postgresql+psycopg://ambula:p%40ss%2Fword@host/db"
