@@ -8,6 +8,7 @@ from argon2 import PasswordHasher
 from fastapi.testclient import TestClient
 from sqlalchemy import select
 
+from services.gateway.access.identify import COOKIE
 from services.gateway.access.roles import Role
 from services.gateway.access.scope import EVERYTHING
 from services.gateway.access.tables import AccountRow, SignInRow
@@ -31,6 +32,12 @@ class Verifications(PasswordHasher):
         return super().verify(hash, password)
 
 
+def hold(browser, value):
+    """Have a browser hold a sign-in as if the gateway had given it."""
+    browser.cookies.clear()
+    browser.cookies.set(COOKIE, value, domain="testserver.local")
+
+
 class Clinic:
     """The gateway as the tests see it from behind, and the browsers before it."""
 
@@ -48,6 +55,7 @@ class Clinic:
         browser = TestClient(self.app)
         if role is not None:
             browser.account = people.sign_in(browser, role, clinic, login)
+            hold(browser, browser.cookies[COOKIE])
             if site_admin:
                 self.change(browser.account, site_admin=True)
         return browser
