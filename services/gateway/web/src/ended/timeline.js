@@ -8,7 +8,8 @@ import { PHASES, WALK_PHASES, ZONE_PHASES, segmentName } from "../words.js";
 
 /** @typedef {import("./history.js").Past} Past */
 
-const ALL_PHASES = { ...PHASES, ...WALK_PHASES, ...ZONE_PHASES };
+/** @type {Record<string, Record<string, string>>} */
+const PARTS_OF = { timed_up_and_go: PHASES, six_minute_walk: WALK_PHASES, ten_metre_walk: ZONE_PHASES };
 const LOST = "#A3211B";
 const TICKS_S = [1, 2, 5, 10, 15, 30, 60, 120, 300, 600, 900, 1800];
 const TICK_PX = 70;
@@ -219,7 +220,12 @@ export function lanesOf({ strides, phases, marks, losses, repetitions }, sides, 
 }
 
 /** @param {Past["phases"][number]} phase */
-const phasePart = ({ phase, start_s, end_s }) => ({ from_s: start_s, to_s: end_s, look: phase, text: ALL_PHASES[phase] });
+const phasePart = ({ task, phase, start_s, end_s }) => ({
+  from_s: start_s,
+  to_s: end_s,
+  look: phase,
+  text: PARTS_OF[task]?.[phase] ?? "",
+});
 
 /** @param {Past["repetitions"][number]} repetition */
 const repetitionPart = ({ start_s, end_s, valid, side }) => ({
