@@ -32,6 +32,7 @@ from services.gateway.sessions.models import (
     SessionState,
 )
 from services.gateway.sessions.rhythms import known_rhythms
+from services.gateway.sources.offered import offered_sources
 
 log = logging.getLogger(__name__)
 router = APIRouter(prefix="/v1/sessions", tags=["sessions"])
@@ -209,7 +210,7 @@ def _ask_for_start(gateway: Gateway, request: StartRequest) -> SessionDescriptio
 def _check_offered(gateway: Gateway, source: str) -> None:
     """No request can make the site listen where nobody set up a device. Raises ControlRefused."""
     if source.startswith("device:"):
-        devices = [each.id for each in gateway.control.offered() if each.kind == "device"]
+        devices = [each.id for each in offered_sources(gateway) if each.kind == "device"]
         if not any(source == device or source.startswith(f"{device}&") for device in devices):
             raise ControlRefused(f"{source} is not there: switch the camera and its computer on, then choose it again")
 
