@@ -10,6 +10,7 @@ const { StrideMemory } = await load("stride_memory.js");
 const { ratioOf } = await load("symmetry_strip.js");
 const { CUES, CueProgress, cuesOf, sentenceOf } = await load("feedback_cues.js");
 const { feedbackAddress, targetFrom, targetOfAddress } = await load("feedback_target.js");
+const { LiveSocket } = await load("live_socket.js");
 const { stateOf } = await load("words.js");
 
 const session = (changes) => ({
@@ -213,4 +214,32 @@ test("a target goes round by its address, and nonsense in one is no target", () 
   assert.equal(targetFrom({ cue: "toString", target: 1 }), null);
   assert.equal(targetFrom({ cue: "knee", target: "1e9" }).target, CUES.knee.most);
   assert.equal(targetFrom({ cue: "knee", target: "x" }).target, CUES.knee.usual);
+});
+
+test("a gateway that accepts and then is too busy to speak is given longer each time", (context) => {
+  context.mock.timers.enable({ apis: ["setTimeout"] });
+  const opened = [];
+  globalThis.location = { protocol: "http:", host: "here" };
+  globalThis.WebSocket = class {
+    constructor() {
+      opened.push(this);
+    }
+    close() {}
+  };
+  const socket = new LiveSocket("/a", { onMessage() {} });
+  const silences = [];
+  for (let round = 0; round < 4; round++) {
+    opened.at(-1).onopen();
+    const before = opened.length;
+    let waited = 0;
+    for (; opened.length === before; waited += 250) context.mock.timers.tick(250);
+    silences.push(waited);
+  }
+  assert.deepEqual(silences, [4250, 8250, 16250, 16250]);
+  opened.at(-1).onopen();
+  opened.at(-1).onmessage({ data: "{}" });
+  context.mock.timers.tick(4000);
+  context.mock.timers.tick(250);
+  assert.equal(opened.length, 6, "one that has spoken is missed after the usual silence");
+  socket.close();
 });

@@ -1,5 +1,5 @@
 // Another stride of the same person, walking along: legs and pelvis, seen through.
-import { CylinderGeometry, Mesh, MeshBasicMaterial } from "three";
+import { BackSide, CylinderGeometry, Mesh, MeshBasicMaterial } from "three";
 
 import { BONES } from "./bones.js";
 import { between } from "./figure.js";
@@ -14,7 +14,9 @@ const DRAWN = BONES.filter(({ from, to }) => /^(hip|knee|ankle|pelvis_top)/.test
 export class Ghost3d {
   /** @param {import("three").Group} body whose turn and place it shares */
   constructor(body) {
-    const material = new MeshBasicMaterial({ color: GHOST_INK, transparent: true, opacity: 0.35, depthWrite: false });
+    // Only its far side is drawn, so that it never lies over the colours of the person's own legs.
+    const look = { color: GHOST_INK, transparent: true, opacity: 0.4, depthWrite: false, side: BackSide };
+    const material = new MeshBasicMaterial(look);
     this.bones = DRAWN.map(({ from, to, radii: [upper, lower] }) => {
       const mesh = new Mesh(new CylinderGeometry(lower * WIDER, upper * WIDER, 1, 12, 1, true), material);
       mesh.visible = false;

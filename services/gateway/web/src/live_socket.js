@@ -5,6 +5,8 @@ import { signedOut } from "./api.js";
 const FIRST_WAIT_MS = 250;
 const LONGEST_WAIT_MS = 1500;
 const SILENCE_MS = 4000;
+/** A gateway that is too busy to answer within the first silence must not be asked again and again without an end. */
+const LONGEST_SILENCE_MS = 16000;
 
 const NOT_LIVE = 4404;
 const NORMAL = 1000;
@@ -22,6 +24,7 @@ export class LiveSocket {
     this.onState = onState;
     this.onEnd = onEnd;
     this.wait = FIRST_WAIT_MS;
+    this.patience = SILENCE_MS;
     this.closed = false;
     this.open();
   }
@@ -33,9 +36,11 @@ export class LiveSocket {
     this.watchSilence();
     socket.onopen = () => {
       this.wait = FIRST_WAIT_MS;
+      this.watchSilence(this.patience);
       this.onState(true);
     };
     socket.onmessage = (event) => {
+      this.patience = SILENCE_MS;
       this.watchSilence();
       this.onMessage(JSON.parse(event.data));
     };
@@ -62,13 +67,14 @@ export class LiveSocket {
   }
 
   // A cable that was pulled closes nothing: the gateway speaks twice a second, so longer silence means a dead line.
-  watchSilence() {
+  watchSilence(patience_ms = SILENCE_MS) {
     clearTimeout(this.silence);
     const socket = this.socket;
     this.silence = setTimeout(() => {
+      this.patience = Math.min(2 * patience_ms, LONGEST_SILENCE_MS);
       socket.close();
       this.lost(socket, 1006);
-    }, SILENCE_MS);
+    }, patience_ms);
   }
 
   close() {

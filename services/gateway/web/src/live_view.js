@@ -6,6 +6,7 @@ import { UNCALIBRATED } from "./camera_words.js";
 import { ChartPanel } from "./chart_panel.js";
 import { el, fill, say, tell } from "./dom.js";
 import { FeedbackDialog } from "./feedback_dialog.js";
+import { entriesOf, needsLook } from "./floor_states.js";
 import { KneePanel } from "./knee_panel.js";
 import { LiveSocket } from "./live_socket.js";
 import { LiveNumbers } from "./live_numbers.js";
@@ -48,6 +49,7 @@ export class LiveView {
   build(host) {
     this.word = el("p", { class: "chip big", role: "status" });
     this.ageText = el("span", { class: "quiet age" });
+    this.others = el("a", { class: "others", href: "#/", hidden: true });
     this.elapsed = el("span", { class: "elapsed" });
     this.advice = el("p", { class: "banner", role: "status", hidden: true });
     this.warning = el("p", { class: "banner warning", role: "alert", hidden: true });
@@ -98,6 +100,7 @@ export class LiveView {
       this.elapsed,
       this.ageText,
       el("span", { class: "spring" }),
+      this.others,
       this.link.node,
       this.controls.node,
       el(
@@ -246,6 +249,13 @@ export class LiveView {
     for (const chart of this.charts) chart.node.classList.toggle("stale", stale);
     for (const part of [this.body, this.sensorPanel, this.numbers, this.symmetry, ...this.panels]) part.tick(stale);
     this.strip?.node.classList.toggle("stale", stale);
+  }
+
+  /** Whoever watches one patient hears of the others. @param {any} status the newest list of all that run */
+  onFloor(status) {
+    const others = entriesOf(status, 0).filter((entry) => entry.session.id !== this.session.id && needsLook(entry));
+    this.others.hidden = others.length === 0;
+    say(this.others, `${others.length} other${others.length === 1 ? " needs" : "s need"} a look`);
   }
 
   /** What is worn otherwise than declared or not calibrated, unless the estimator's own message says what to do. */

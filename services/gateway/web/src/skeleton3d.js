@@ -39,7 +39,7 @@ const FRAME_S = 0.05;
 export class Skeleton3d {
   constructor(host) {
     this.host = host;
-    this.renderer = new WebGLRenderer({ antialias: true, alpha: true });
+    this.renderer = new WebGLRenderer({ antialias: !drawsInSoftware(), alpha: true });
     this.renderer.setPixelRatio(Math.min(window.devicePixelRatio, 2));
     host.append(this.renderer.domElement);
     this.labels = new KneeLabels(host);
@@ -251,13 +251,30 @@ export class Skeleton3d {
   }
 }
 
+/** Ask a context of its own something, and give it back. @template T @param {(context: WebGL2RenderingContext|null) => T} question */
+function asked(question) {
+  const context = document.createElement("canvas").getContext("webgl2");
+  try {
+    return question(context);
+  } finally {
+    context?.getExtension("WEBGL_lose_context")?.loseContext();
+  }
+}
+
 /** Whether this browser can draw in space. */
 export function canDraw3d() {
   try {
-    const context = document.createElement("canvas").getContext("webgl2");
-    context?.getExtension("WEBGL_lose_context")?.loseContext();
-    return context !== null;
+    return asked((context) => context !== null);
   } catch {
     return false;
   }
+}
+
+/** Whether no graphics card helps: smooth edges then cost three of four pictures per second. */
+function drawsInSoftware() {
+  return asked((context) => {
+    const details = context?.getExtension("WEBGL_debug_renderer_info");
+    const name = details ? context?.getParameter(details.UNMASKED_RENDERER_WEBGL) : "";
+    return /swiftshader|llvmpipe|software|basic render/i.test(String(name));
+  });
 }

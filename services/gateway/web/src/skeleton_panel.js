@@ -16,6 +16,7 @@ export class SkeletonPanel {
     this.views = el("div", { class: "views", role: "group", "aria-label": "View from" });
     this.stage = el("div", { class: "stage" });
     this.key = el("p", { class: "key" });
+    this.ghostKey = el("span", { class: "ghost-key" }, "violet: ghost");
     this.buildGhost(paretic ?? "left");
     this.node = el("section", { class: "panel body-panel", "aria-label": "Skeleton" }, this.views, this.stage, this.key);
     this.showKey(SIDES);
@@ -41,7 +42,7 @@ export class SkeletonPanel {
   chooseGhost(kind) {
     this.ghostKind.value = kind in GHOSTS ? kind : "off";
     this.ghostKind.title = GHOSTS[this.ghostKind.value].meaning;
-    this.ghostSide.hidden = this.ghostKind.value === "off";
+    this.ghostSide.hidden = this.ghostKey.hidden = this.ghostKind.value === "off";
     remember(GHOST_NAME, this.ghostKind.value);
   }
 
@@ -77,7 +78,8 @@ export class SkeletonPanel {
 
   showKey(sides) {
     const names = sides.map((side) => el("b", { class: side }, side === "left" ? "L left" : "R right"));
-    fill(this.key, ...names, el("span", {}, "grey: not known now"), el("span", {}, "pale: not measured"));
+    const said = ["grey: not known now", "pale: not measured"].map((words) => el("span", {}, words));
+    fill(this.key, ...names, ...said, this.ghost.hidden ? null : this.ghostKey);
   }
 
   /** `body` has lengths and the height of the floor; nothing is drawn before it is known. */
