@@ -77,6 +77,7 @@ class SessionRow(Base):
     description: Mapped[dict[str, Any] | None] = mapped_column(JSON)
     metrics: Mapped["MetricsRow | None"] = relationship(lazy="selectin")
     calibration: Mapped["CalibrationRow | None"] = relationship(lazy="selectin")
+    patient: Mapped["PatientRow | None"] = relationship(lazy="selectin", viewonly=True)
 
 
 class MetricsRow(Base):

@@ -3,13 +3,13 @@
 from http import HTTPStatus
 
 from schemas.population import Sex
-from schemas.session import SessionDescription
 from services.exports.fhir.source import FhirSource, PrintedReport, Recorded, Subject
 from services.gateway.context import Gateway
 from services.gateway.problems import Problem
 from services.gateway.report.gather import recording_digest, report_source
 from services.gateway.sessions.records import get_session
 from services.gateway.sessions.shapes import stored_metrics
+from services.gateway.sessions.told import description_of
 from services.gateway.tables import PatientRow
 from services.report.assemble import make_report
 from services.report.content import Language
@@ -25,12 +25,13 @@ def fhir_source(gateway: Gateway, session: str, site: str, language: Language | 
     with gateway.transaction() as database:
         row = get_session(database, session)
         metrics = stored_metrics(row)
-        if metrics is None or row.description is None:
+        description = description_of(row)
+        if metrics is None or description is None:
             step = f"Walk a few steps and read again, or compute it anew with `ambula reprocess {session} --store`."
             raise Problem(HTTPStatus.CONFLICT, f"Session {session} has no metrics.", step)
         patient = None if row.patient_code is None else database.get(PatientRow, row.patient_code)
         subject = None if patient is None else _subject(patient)
-        began, description = row.started or row.created, SessionDescription.model_validate(row.description)
+        began = row.started or row.created
     return FhirSource(
         description=description,
         metrics=metrics,

@@ -22,6 +22,7 @@ from services.gateway.references.shelf import shelf_of
 from services.gateway.sessions.models import SessionState
 from services.gateway.sessions.records import get_session
 from services.gateway.sessions.shapes import stored_metrics
+from services.gateway.sessions.told import description_of
 from services.gateway.tables import PatientRow, SessionRow, TreatmentRow
 from services.recordings.errors import ArchiveError, NotARecording
 from services.recordings.folder import read_manifest
@@ -71,10 +72,11 @@ def _final_metrics(row: SessionRow) -> SessionMetrics:
 
 
 def _description(row: SessionRow) -> SessionDescription:
-    if row.description is None:
+    description = description_of(row)
+    if description is None:
         step = f"Compute it anew from the recording with `ambula reprocess {row.id} --store`, then ask again."
         raise Problem(HTTPStatus.CONFLICT, f"Nothing is stored of how session {row.id} was done.", step)
-    return SessionDescription.model_validate(row.description)
+    return description
 
 
 def _patient(row: PatientRow) -> Patient:

@@ -107,6 +107,8 @@ def link_session(session: SessionId, body: SessionLink, gateway: Context, reques
         if body.patient is not None:
             row.clinic_id = get_patient(database, body.patient).clinic_id
         row.patient_code = body.patient
+        database.flush()
+        database.expire(row, ["patient"])
         answer, clinic = shapes.session_out(row), row.clinic_id
     gateway.live.assign(session, body.patient, clinic)
     return answer

@@ -2,7 +2,6 @@
 
 import math
 
-from schemas.conditions import Conditions
 from schemas.kinematics import Calibration
 from schemas.metrics import SessionMetrics
 from schemas.tasks import Repetition, TaskPhase
@@ -18,6 +17,7 @@ from services.gateway.sessions.models import (
     RepetitionsOut,
     SessionOut,
 )
+from services.gateway.sessions.told import conditions_of
 from services.gateway.tables import SessionRow
 
 
@@ -40,7 +40,7 @@ def session_out(row: SessionRow) -> SessionOut:
         source=row.source,
         task=row.task,
         walkway_m=row.walkway_m,
-        conditions=None if row.description is None else Conditions.model_validate(row.description["conditions"]),
+        conditions=conditions_of(row),
         software=None if row.metrics is None else row.metrics.software,
         datum=None if calibration is None else calibration.datum,
         misplaced={} if calibration is None else calibration.misplaced,

@@ -110,6 +110,18 @@ def test_lists_can_be_filtered_by_state_and_patient(client, gateway, made):
     assert client.get("/v1/sessions", params={"state": "odd"}).status_code == HTTPStatus.UNPROCESSABLE_ENTITY
 
 
+def test_a_session_that_is_linked_later_has_the_patient_s_paretic_side_where_it_said_none(client):
+    code = client.post("/v1/patients", json={"paretic_side": "left"}).json()["code"]
+    started = start(client).json()
+    assert started["conditions"]["paretic_side"] is None
+    path = f"/v1/sessions/{started['id']}"
+    assert client.patch(path, json={"patient": code}).json()["conditions"]["paretic_side"] == "left"
+    assert client.get(path).json()["conditions"]["paretic_side"] == "left"
+    client.patch(f"/v1/patients/{code}", json={"paretic_side": "right"})
+    assert client.get(path).json()["conditions"]["paretic_side"] == "right"
+    assert client.patch(path, json={"patient": None}).json()["conditions"]["paretic_side"] is None
+
+
 def test_a_session_can_be_linked_and_unlinked(client):
     code = client.post("/v1/patients", json={}).json()["code"]
     path = f"/v1/sessions/{start(client).json()['id']}"
