@@ -24,6 +24,8 @@ export const PHASE_COLOURS = {
 };
 /** Baseline and its MDC, under marks. */
 export const CHANGE_BAND = "#E9EDF0";
+/** What people like the patient have; nothing is written in it. */
+export const REFERENCE_BAND = "#D5DADD";
 export const PANEL = "#FFFFFF";
 export const GHOST = "#DDE4E7";
 /** Another stride beside the person's own: of neither side. */

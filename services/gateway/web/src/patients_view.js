@@ -1,90 +1,144 @@
-// Patients as codes. Who is behind a code is known outside of Ambula.
-import { get, post } from "./api.js";
+// @ts-check
+// Patients as codes: who came last first, how they stand, and who they are once somebody asks for it.
+import { post } from "./api.js";
 import { GROUPS, PARETIC } from "./condition_words.js";
-import { el, fill, say, table } from "./dom.js";
+import { keepName } from "./directory.js";
+import { el, fill, tell } from "./dom.js";
+import { askForm } from "./form_dialog.js";
+import { labelled } from "./form_fields.js";
+import { PagedList, chip, moment, row, rowHead } from "./paged_list.js";
+import { PatientFields } from "./patient_fields.js";
+import { findPatients } from "./patient_search.js";
+import { DIRECTIONS, VERDICTS } from "./rule_words.js";
 import { when } from "./units.js";
+import { TASKS, metricName } from "./words.js";
 
-const PAGE = 50;
+const TYPING_MS = 250;
+const COLUMNS = ["Patient", "Born", "Group", "Paretic side", "Visits#", "Last visit", "Since the baseline"];
+
+/** @typedef {import("./patient_search.js").Entry} Entry */
 
 /** @param {import("./pages.js").Place} place */
-export const open = ({ host }) => new PatientsView(host);
+export const open = ({ host, app }) => new PatientsView(host, app.me.may);
 
-export class PatientsView {
-  constructor(host) {
-    this.rows = el("tbody");
-    this.total = el("span", { class: "quiet" });
-    this.problem = el("p", { class: "banner", role: "alert", hidden: true });
-    this.offset = 0;
+class PatientsView {
+  showNames = false;
+  /** @type {Map<string, import("./directory.js").Entry>} */
+  names = new Map();
+
+  /** @param {HTMLElement} host @param {string[]} may */
+  constructor(host, may) {
+    this.mayName = may.includes("names");
+    this.search = el("input", { type: "search", maxlength: 60, autocomplete: "off", oninput: () => this.type() });
+    this.group = el(
+      "select",
+      { onchange: () => this.list.restart() },
+      el("option", { value: "" }, "All groups"),
+      ...Object.entries(GROUPS).map(([value, name]) => el("option", { value }, name)),
+    );
+    this.trouble = el("p", { class: "banner", role: "status", hidden: true });
+    this.toggle = el("button", { type: "button", "aria-pressed": "false", onclick: () => this.toggleNames() }, "Show names");
+    this.toggle.hidden = !this.mayName;
+    const add = el("button", { class: "primary", type: "button", onclick: () => this.register() }, "New patient");
+    add.hidden = !may.includes("work");
+    this.list = new PagedList({
+      columns: COLUMNS,
+      empty: [
+        el("h2", {}, "Nobody is found"),
+        el("p", {}, "Clear the search to see all patients, or register a new one."),
+      ],
+      read: (part) => this.read(part),
+      row: (/** @type {Entry} */ entry) => this.row(entry),
+    });
     fill(
       host,
       el(
         "section",
-        { class: "panel", "aria-label": "Patients" },
+        { class: "panel listed", "aria-label": "Patients" },
+        el("div", { class: "panel-head" }, el("h1", {}, "Patients"), el("span", { class: "spring" }), this.toggle, add),
         el(
           "div",
-          { class: "panel-head" },
-          el("h1", {}, "Patients"),
-          this.total,
-          el("span", { class: "spring" }),
-          el("button", { type: "button", onclick: () => this.turn(-PAGE) }, "Newer"),
-          el("button", { type: "button", onclick: () => this.turn(PAGE) }, "Older"),
-          el("button", { class: "primary", type: "button", onclick: () => this.add() }, "New patient"),
+          { class: "filters" },
+          labelled(this.mayName ? "Code, or part of the name" : "Code", this.search),
+          labelled("Group", this.group),
         ),
-        el(
-          "p",
-          { class: "quiet" },
-          "A patient is a random code here. Write it on the chart; names do not belong into this software.",
-        ),
-        this.problem,
-        table(["Code", "Year of birth", "Group", "Paretic side", "Sessions#", "Registered"], this.rows),
+        el("p", { class: "quiet" }, "A patient is a random code here. Names are in the clinic’s own directory and are shown only while you ask for them."),
+        this.trouble,
+        this.list.node,
       ),
     );
-    this.load();
+    this.list.refresh();
   }
 
-  turn(by) {
-    if (this.offset + by >= 0 && this.offset + by < this.count) this.load((this.offset += by));
+  type() {
+    clearTimeout(this.timer);
+    this.timer = setTimeout(() => this.list.restart(), TYPING_MS);
   }
 
-  async load() {
-    await this.attempt(async () => {
-      const page = await get("/patients", { limit: PAGE, offset: this.offset });
-      this.count = page.total;
-      say(this.total, `${page.total} in all`);
-      fill(
-        this.rows,
-        page.items.length > 0
-          ? page.items.map((patient) => this.row(patient))
-          : el("tr", {}, el("td", { colspan: 6, class: "quiet" }, "No patients yet.")),
-      );
-    });
+  toggleNames() {
+    this.showNames = !this.showNames;
+    this.toggle.setAttribute("aria-pressed", String(this.showNames));
+    fill(this.toggle, this.showNames ? "Hide names" : "Show names");
+    this.list.refresh();
   }
 
-  row({ code, year_of_birth, population, paretic_side, sessions, created }) {
-    const known = [year_of_birth, GROUPS[population], PARETIC[paretic_side]];
-    return el(
-      "tr",
-      {},
-      el("th", { scope: "row" }, el("a", { class: "code", href: `#/patients/${code}` }, code)),
-      ...known.map((value) => (value ? el("td", {}, String(value)) : el("td", { class: "quiet" }, "not said"))),
-      el("td", { class: "number" }, String(sessions)),
-      el("td", {}, when(created)),
+  /** @param {{offset: number, limit: number}} part */
+  async read(part) {
+    const { mayName, showNames } = this;
+    const found = await findPatients(this.search.value.trim(), { mayName, showNames, population: this.group.value, ...part });
+    this.names = found.names;
+    tell(this.trouble, found.trouble);
+    return found;
+  }
+
+  /** @param {Entry} entry */
+  row(entry) {
+    const { code, year_of_birth, population, paretic_side, visits, last_visit, shared } = entry;
+    const name = this.showNames ? (this.names.get(code)?.name ?? "") : "";
+    return row(
+      rowHead(
+        el("a", { class: "code", href: `#/patients/${code}` }, code),
+        name ? el("span", { class: "person" }, name) : null,
+        shared ? el("span", { class: "quiet" }, " shared with you") : null,
+      ),
+      year_of_birth ?? notSaid(),
+      population ? GROUPS[population] : notSaid(),
+      paretic_side ? PARETIC[paretic_side] : notSaid(),
+      el("td", { class: "number" }, visits),
+      moment(last_visit ? when(last_visit) : "never"),
+      standing(entry),
     );
   }
 
-  async add() {
-    await this.attempt(async () => (location.hash = `#/patients/${(await post("/patients", { body: {} })).code}`));
+  async register() {
+    const fields = new PatientFields({ mayName: this.mayName });
+    let code = "";
+    const done = await askForm({
+      title: "New patient",
+      fields: [fields.node],
+      action: "Register",
+      act: async () => {
+        // Asked again after the name could not be kept, the patient is there already.
+        code ||= (await post("/patients", { body: fields.facts })).code;
+        if (fields.identity) await keepName(code, fields.identity);
+      },
+    });
+    if (done) location.hash = `#/patients/${code}`;
+    else if (code) this.list.restart();
   }
 
-  async attempt(action) {
-    this.problem.hidden = true;
-    try {
-      await action();
-    } catch (problem) {
-      say(this.problem, problem.message);
-      this.problem.hidden = false;
-    }
+  dispose() {
+    clearTimeout(this.timer);
   }
+}
 
-  dispose() {}
+const notSaid = () => el("span", { class: "quiet" }, "not said");
+
+/** The verdict on the newest test, and what it is on. @param {Entry} entry */
+function standing({ standing: found, visits }) {
+  if (!found) return el("span", { class: "quiet" }, visits > 1 ? "no baseline yet" : "–");
+  const { word, tone } = VERDICTS[found.verdict];
+  const way = found.direction ? `, ${DIRECTIONS[found.direction]}` : "";
+  const shown = chip(word + way, /** @type {any} */ (found.direction === "worse" ? "check" : tone));
+  return [shown, el("span", { class: "quiet" }, ` ${metricName(found.measure)}${found.task === "walk" ? "" : `, ${TASKS[found.task].toLowerCase()}`}`)];
 }

@@ -1,7 +1,7 @@
-// One measure over the visits: baseline and its MDC band, 95 % intervals, treatments; a triangle only for a real change.
+// One measure over the visits: reference, baseline and its MDC band, 95 % intervals, treatments; a triangle only for a real change.
 import { svg } from "./dom.js";
 import { Drawing, leftAxis, text, ticksOf } from "./drawing.js";
-import { CHANGE_BAND, INK, INVALID, PANEL, PELVIS, SIDE_COLOUR, SIDE_DASH } from "./palette.js";
+import { CHANGE_BAND, INK, INVALID, PANEL, PELVIS, REFERENCE_BAND, SIDE_COLOUR, SIDE_DASH } from "./palette.js";
 
 const HEIGHT = 168;
 const MARGIN = { left: 42, right: 20, top: 16, bottom: 26 };
@@ -14,22 +14,27 @@ const LETTERS = { left: "L", right: "R" };
  * @typedef {{side: "left"|"right"|null, marks: Mark[], baseline: number|null, mdc: number|null}} Line
  */
 export class ProgressChart {
-  /** @param {{lines: Line[], treatments: {at: number, letter: string}[], label: string}} content */
+  /**
+   * @param {HTMLElement} host
+   * @param {{lines: Line[], treatments: {at: number, letter: string}[], reference: {low: number, high: number}|null,
+   *   label: string}} content
+   */
   constructor(host, content) {
     this.content = content;
     this.drawing = new Drawing(host, { label: content.label, height: HEIGHT, draw: (width) => this.draw(width) });
   }
 
   draw(width) {
-    const { lines, treatments } = this.content;
+    const { lines, treatments, reference } = this.content;
     const numbers = [...new Set(lines.flatMap((line) => line.marks.map((mark) => mark.number)))].sort((a, b) => a - b);
     const [first, last] = [numbers[0] - 0.4, Math.max(numbers.at(-1), numbers[0] + 1) + 0.4];
-    const [low, high] = spanOf(lines);
+    const [low, high] = spanOf(lines, reference);
     const [right, bottom] = [width - MARGIN.right, HEIGHT - MARGIN.bottom];
     const across = (visit) => MARGIN.left + ((visit - first) / (last - first)) * (right - MARGIN.left);
     const up = (value) => bottom - ((value - low) / (high - low)) * (bottom - MARGIN.top);
     const place = { left: MARGIN.left, right, top: MARGIN.top, bottom, across, up };
     return [
+      ...(reference ? [referenceBand(reference, place)] : []),
       ...lines.flatMap((line) => band(line, place, lines.length === 1)),
       ...leftAxis(ticksOf(low, high, 4), up, { left: MARGIN.left, right, title: "", middle: 0 }),
       ...numbers.map((visit) => text(across(visit), HEIGHT - 8, String(visit), { "text-anchor": "middle" })),
@@ -45,18 +50,23 @@ export class ProgressChart {
 }
 
 /** From the least to the largest of what is drawn, with some room; never nothing. */
-export function spanOf(lines) {
+export function spanOf(lines, reference = null) {
   const values = lines.flatMap(({ marks, baseline, mdc }) => [
     ...marks.flatMap(({ value, low, high }) => [value, low, high]),
     ...(baseline !== null && mdc !== null ? [baseline - mdc, baseline + mdc] : []),
   ]);
-  const known = values.filter((value) => value !== null);
+  const known = [...values, ...(reference ? [reference.low, reference.high] : [])].filter((value) => value !== null);
   const [low, high] = [Math.min(...known), Math.max(...known)];
   const room = Math.max(0.08 * (high - low), 0.02 * Math.abs(high), 1e-6);
   return [low - room, high + room];
 }
 
 const colourOf = (side) => SIDE_COLOUR[side] ?? PELVIS;
+
+function referenceBand({ low, high }, { left, right, up }) {
+  const box = { x: left, y: up(high), width: right - left, height: up(low) - up(high) };
+  return svg("rect", { ...box, fill: REFERENCE_BAND, opacity: 0.55, class: "reference-band" });
+}
 
 function band({ side, baseline, mdc }, { left, right, up }, filled) {
   if (baseline === null) return [];

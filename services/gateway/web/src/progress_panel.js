@@ -3,6 +3,7 @@ import { PACES } from "./condition_words.js";
 import { el, fill, table } from "./dom.js";
 import { ProgressChart } from "./progress_chart.js";
 import { byMeasure, lineOf, notAlike } from "./progress_series.js";
+import { bandOf } from "./reference_bands.js";
 import { DIRECTIONS, VERDICTS, ruleSentence, sayer } from "./rule_words.js";
 import { number, shown } from "./units.js";
 import { TASKS, metricName } from "./words.js";
@@ -21,16 +22,20 @@ export class ProgressPanel {
       el(
         "p",
         { class: "quiet" },
-        "Dashed: baseline; band: ± MDC, the smallest change beyond measurement error; bars: 95 % interval. Triangle:",
+        "Grey: reference, the middle 90 % of people like this one. Dashed: baseline; band: ± MDC, the smallest change beyond measurement error; bars: 95 % interval. Triangle:",
         " real change. Dot: within measurement error or cannot tell. Square: baseline. Hollow: not comparable.",
       ),
       this.place,
     );
   }
 
-  /** @param {object[]} series of the API @param {object[]} treatments with letter and place */
-  show(series, treatments) {
+  /**
+   * @param {object[]} series of the API @param {object[]} treatments with letter and place
+   * @param {Map<string, import("./reference_bands.js").Band>} bands by test and measure
+   */
+  show(series, treatments, bands) {
     this.dispose();
+    this.bands = bands;
     this.charts = [];
     const tests = Object.values(Object.groupBy(byMeasure(series), (each) => `${each.task} ${each.instruction}`));
     const nothing = el("p", {}, "No visit has numbers that can be followed yet.");
@@ -50,17 +55,19 @@ export class ProgressPanel {
     );
   }
 
-  multiple({ measure, unit, series }, treatments) {
+  multiple({ task, instruction, measure, unit, series }, treatments) {
     const host = el("div", { class: "drawn" });
     const sign = shown(unit, measure).unit;
     const lines = series.map(lineOf);
     const name = metricName(measure);
-    this.charts.push(new ProgressChart(host, { lines, treatments, label: chartWords(name, sign, lines) }));
+    const reference = bandOf(this.bands, { task, instruction, measure });
+    this.charts.push(new ProgressChart(host, { lines, treatments, reference, label: chartWords(name, sign, lines, reference) }));
     return el(
       "figure",
       { class: "multiple", "data-measure": measure },
       el("figcaption", {}, name, sign ? el("span", { class: "unit" }, ` ${sign}`) : null),
       host,
+      reference ? el("p", { class: "quiet reference" }, referenceWords(reference, sign)) : null,
       ...bySentence(series).map(verdictOf),
     );
   }
@@ -150,11 +157,17 @@ function repeatTable(series) {
 const told = (value, say) => (value === undefined || value === null ? "–" : say(value));
 
 /** The chart in words with its numbers. */
-function chartWords(name, unit, lines) {
+function chartWords(name, unit, lines, reference) {
   const parts = lines.map(({ side, marks, baseline, mdc }) => {
     const values = marks.map((mark) => `visit ${mark.number} ${number(mark.value, 2)}`).join(", ");
     const band = baseline === null ? "" : `; baseline ${number(baseline, 2)}${mdc === null ? "" : ` ± ${number(mdc, 2)}`}`;
     return `${side ? `${side}: ` : ""}${values}${band}`;
   });
-  return `${name}${unit ? ` in ${unit}` : ""} by visit. ${parts.join(". ")}.`;
+  const people = reference ? ` Reference ${number(reference.low, 2)} to ${number(reference.high, 2)}.` : "";
+  return `${name}${unit ? ` in ${unit}` : ""} by visit. ${parts.join(". ")}.${people}`;
+}
+
+function referenceWords({ low, high, title, citation, n }, unit) {
+  const people = n === null ? "" : `, n=${n}`;
+  return `Reference ${number(low, 2)} to ${number(high, 2)}${unit ? ` ${unit}` : ""}: ${title}${people} (${citation}).`;
 }
