@@ -1,7 +1,7 @@
 """The web application: routes, errors, headers and the parts behind them."""
 
 import asyncio
-from collections.abc import AsyncIterator
+from collections.abc import AsyncIterator, Callable
 from contextlib import asynccontextmanager
 from functools import partial
 from importlib.metadata import version
@@ -22,15 +22,20 @@ from services.gateway.accounts.own import router as own_account
 from services.gateway.accounts.passwords import Passwords
 from services.gateway.accounts.records import has_accounts
 from services.gateway.accounts.routes import router as accounts
+from services.gateway.audit.heads import Heads
 from services.gateway.audit.routes import router as audit
 from services.gateway.audit.trail import AuditTrail
 from services.gateway.clinics.routes import router as clinics
 from services.gateway.context import Gateway
 from services.gateway.control import Control
-from services.gateway.database import open_database
+from services.gateway.database import DatabaseError, open_database
 from services.gateway.devices.routes import router as devices
 from services.gateway.directory.routes import router as names
 from services.gateway.directory.store import NameDirectory
+from services.gateway.erasure.eraser import Eraser
+from services.gateway.erasure.housekeeping import Housekeeping
+from services.gateway.erasure.routes import router as erasure
+from services.gateway.erasure.tombstones import Tombstones, TombstonesUnreadable
 from services.gateway.exports.routes import router as exports
 from services.gateway.fhir.routes import router as fhir
 from services.gateway.health.routes import router as health
@@ -75,6 +80,7 @@ ROUTERS = (
     patients,
     names,
     recycling,
+    erasure,
     roster,
     visits,
     progress,
@@ -102,7 +108,17 @@ def create_app(settings: GatewaySettings, live: LiveHub, control: Control) -> Fa
     keeper = SessionKeeper(database, live, live.parameters, settings.clinic)
     directory = NameDirectory(settings.directory_url, settings.directory_key)
     numbers = site_registry(live, database, settings.data_dir)
-    jobs = {"sign_ins": partial(forget_expired_sign_ins, database, live.parameters)}
+    stones = Tombstones(settings.own_dir)
+    eraser = Eraser(database, directory, stones, settings.data_dir, keeper, live, control)
+    _erase_again(eraser)
+    house_rules = Housekeeping(eraser, Heads(settings.own_dir), live.parameters)
+    jobs: dict[str, Callable[[], object]] = {
+        "sign_ins": partial(forget_expired_sign_ins, database, live.parameters),
+        "bin": house_rules.empty_bin,
+        "retention": house_rules.keep_no_longer,
+        "recordings": house_rules.remove_recordings,
+        "audit": house_rules.sign_audit,
+    }
 
     @asynccontextmanager
     async def lifespan(_: FastAPI) -> AsyncIterator[None]:
@@ -124,7 +140,7 @@ def create_app(settings: GatewaySettings, live: LiveHub, control: Control) -> Fa
         openapi_url="/v1/openapi.json",
     )
     app.state.gateway = Gateway(
-        settings, live.parameters, database, keeper, live, control, Passwords(), numbers, directory
+        settings, live.parameters, database, keeper, live, control, Passwords(), numbers, directory, eraser
     )
     app.state.oidc = OidcServices(settings.oidc)
     problems.install(app)
@@ -139,6 +155,13 @@ def create_app(settings: GatewaySettings, live: LiveHub, control: Control) -> Fa
     app.add_middleware(SecurityHeaders)
     app.openapi = lambda: _openapi(app)  # type: ignore[method-assign]
     return app
+
+
+def _erase_again(eraser: Eraser) -> None:
+    try:
+        eraser.apply_again()
+    except TombstonesUnreadable as error:
+        raise DatabaseError(f"who was erased can not be told: {error}") from error
 
 
 def first_run_code(app: FastAPI) -> str | None:

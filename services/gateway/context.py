@@ -16,6 +16,7 @@ from services.gateway.accounts.passwords import Passwords
 from services.gateway.control import Control
 from services.gateway.database import Database
 from services.gateway.directory.store import NameDirectory
+from services.gateway.erasure.eraser import Eraser
 from services.gateway.live.hub import LiveHub
 from services.gateway.parameters import GatewayParameters
 from services.gateway.sessions.keeper import SessionKeeper
@@ -35,6 +36,7 @@ class Gateway:
     passwords: Passwords
     numbers: CollectorRegistry
     directory: NameDirectory
+    eraser: Eraser
     caller: Caller | None = None
 
     @property

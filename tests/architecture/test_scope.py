@@ -26,6 +26,8 @@ EVERYTHING = {
     "services/gateway/clinics/routes.py": "clinics, which a site's administrator has all of",
     "services/gateway/devices/routes.py": "whether another clinic has registered the same source",
     "services/gateway/directory/store.py": "names, in a database where nothing else is",
+    "services/gateway/erasure/eraser.py": "what is erased, whoever it belonged to",
+    "services/gateway/erasure/housekeeping.py": "the bin and the retention of every clinic",
     "services/gateway/keys/routes.py": "who made a key may work in another clinic by now",
     "services/gateway/live/routes.py": "entries of the audit",
     "services/gateway/monitoring/site.py": "numbers about the site, none about a patient",
@@ -39,6 +41,7 @@ EVERYTHING = {
 
 OF_PATIENTS_TOO = {
     "services/gateway/monitoring/site.py": "counts sessions by state",
+    "services/gateway/erasure/housekeeping.py": "the bin and the retention of every clinic",
     "services/gateway/recycling/routes.py": "a session in the bin whose patient is not: no scope has both",
     "services/cli/picture_visits.py": "pictures of a made-up patient",
 }

@@ -105,6 +105,10 @@ class LiveHub:
         """A session is over: viewers are told its state, then let go."""
         self._on_loop(lambda: self._close(session, state))
 
+    def forget(self, session: str) -> None:
+        """The session was erased: whoever watches it is let go, and nothing of it is kept."""
+        self.close(session, "erased")
+
     # Asked by routes, on the event loop.
 
     def bind(self, loop: asyncio.AbstractEventLoop) -> None:

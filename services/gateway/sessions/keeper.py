@@ -37,6 +37,7 @@ class SessionKeeper:
     clinic: str = "main"
     clock: Callable[[], float] = time.monotonic
     running: set[str] = field(default_factory=set)
+    _erased: set[str] = field(default_factory=set)
     _finished: set[str] = field(default_factory=set)
     _reached_s: dict[str, float] = field(default_factory=dict)
     _gone_since: dict[str, float] = field(default_factory=dict)
@@ -48,8 +49,14 @@ class SessionKeeper:
             for session in records.open_sessions(database):
                 self._gone_since.setdefault(session, self.clock())
 
+    def forget(self, session: str) -> None:
+        """The session was erased: nothing of it is written any more, whatever still comes. From any thread."""
+        self._erased.add(session)
+
     def appeared(self, description: SessionDescription) -> None:
         """An ingest runs this session."""
+        if description.session in self._erased:
+            return
         self.running.add(description.session)
         self._gone_since.pop(description.session, None)
         self.live.open(description)
@@ -125,6 +132,8 @@ class SessionKeeper:
             records.record_end(database, session, SessionState.INTERRUPTED, VANISHED)
 
     def _write(self, key: tuple[str, str], write: Callable[[], None]) -> None:
+        if key[0] in self._erased:
+            return
         # By key, so that a long outage keeps one write of each kind per session and not one per stride.
         try:
             write()
