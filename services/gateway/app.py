@@ -41,6 +41,7 @@ from services.gateway.fhir.routes import router as fhir
 from services.gateway.health.routes import router as health
 from services.gateway.housekeeping import keep_house
 from services.gateway.keys.routes import router as keys
+from services.gateway.limits import RateLimit
 from services.gateway.live.hub import LiveHub
 from services.gateway.live.routes import router as live_routes
 from services.gateway.monitoring.requests import CountRequests, RequestNumbers
@@ -149,8 +150,9 @@ def create_app(settings: GatewaySettings, live: LiveHub, control: Control) -> Fa
         app.include_router(router)
     pages.install(app, settings.pages_dir)
     app.add_middleware(AuditTrail, database=database)
-    app.add_middleware(BodyLimit, most_bytes=live.parameters.most_body_bytes)
+    app.add_middleware(BodyLimit, most_bytes=live.parameters.most_body_bytes, within_s=live.parameters.body_within_s)
     app.add_middleware(HostNames, names=settings.host_names)
+    app.add_middleware(RateLimit, parameters=live.parameters)
     app.add_middleware(CountRequests, numbers=RequestNumbers(numbers))
     app.add_middleware(SecurityHeaders)
     app.openapi = lambda: _openapi(app)  # type: ignore[method-assign]

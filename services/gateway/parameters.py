@@ -28,6 +28,9 @@ class GatewayParameters:
     most_viewers: int = 100
     """Number of open live connections; 100 of them cost 7 % of a core."""
 
+    most_viewers_of_clinic: int = 50
+    """Number of them that one clinic may have, so that none can take all."""
+
     stale_s: float = 3.0
     """s without a health message after which a service counts as silent: three missed ones."""
 
@@ -36,6 +39,27 @@ class GatewayParameters:
 
     most_body_bytes: int = 1_000_000
     """Bytes of a request body."""
+
+    body_within_s: float = 20.0
+    """s in which a request body has to come."""
+
+    requests_per_caller_per_s: float = 100.0
+    """Requests of one sign-in or key in the long run; a page that is left open asks about twice a second."""
+
+    request_burst_of_caller: float = 500.0
+    """Requests of one sign-in or key at once."""
+
+    requests_per_address_per_s: float = 300.0
+    """Requests from one address in the long run: a clinic behind one router."""
+
+    request_burst_of_address: float = 1500.0
+    """Requests from one address at once."""
+
+    sign_ins_per_address_per_s: float = 1.0
+    """Passwords and codes that are tried from one address in the long run; each account closes much earlier."""
+
+    sign_in_burst_of_address: float = 60.0
+    """Passwords and codes from one address at once: everybody begins work at eight."""
 
     most_socket_bytes: int = 8_192
     """Bytes of one message that a browser may send over a live connection."""

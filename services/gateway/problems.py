@@ -44,9 +44,10 @@ class ProblemOut(BaseModel):
 
 
 class Problem(Exception):
-    """Raised by routes; becomes a problem response. `title` None: the status in words."""
+    """Raised by routes; becomes a problem response. `title` None: the status in words; `retry_after_s`: come then."""
 
     title: str | None = None
+    retry_after_s: int | None = None
 
     def __init__(self, status: HTTPStatus, detail: str, next_step: str) -> None:
         super().__init__(detail)
@@ -82,7 +83,10 @@ async def _from_problem(asked: HTTPConnection, error: Exception) -> JSONResponse
         await asked.accept()
         await asked.close(SOCKET_CODE + error.status, error.detail)
         return None
-    return problem_response(error.status, error.detail, error.next_step, title=error.title)
+    response = problem_response(error.status, error.detail, error.next_step, title=error.title)
+    if error.retry_after_s is not None:
+        response.headers["Retry-After"] = str(error.retry_after_s)
+    return response
 
 
 def _from_validation(_: Request, error: Exception) -> JSONResponse:

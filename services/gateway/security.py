@@ -1,5 +1,6 @@
 """Response headers, and the bounds on what a client may send. Plain ASGI, so sockets and files are covered too."""
 
+import asyncio
 import contextlib
 from http import HTTPStatus
 
@@ -34,38 +35,48 @@ class SecurityHeaders:
         await self.app(scope, receive, send_with_headers)
 
 
-class BodyTooLarge(Exception):
-    """More bytes came than a request may have."""
+class BodyRefused(Exception):
+    """More bytes came than a request may have, or they came too slowly."""
 
 
 class _Counter:
-    """Counts what is received. Past the bound nothing of the application's own answer goes out."""
+    """Counts what is received. Past the bounds nothing of the application's own answer goes out."""
 
-    def __init__(self, receive: Receive, send: Send, most_bytes: int) -> None:
+    def __init__(self, receive: Receive, send: Send, most_bytes: int, within_s: float) -> None:
         self._receive = receive
         self._send = send
         self._left = most_bytes
-        self.exceeded = False
+        self._until_s = asyncio.get_running_loop().time() + within_s
+        self._is_coming = True
+        self.exceeded: HTTPStatus | None = None
 
     async def receive(self) -> Message:
-        message = await self._receive()
+        try:
+            # What comes after the body is the end of the connection, whenever that may be.
+            async with asyncio.timeout_at(self._until_s if self._is_coming else None):
+                message = await self._receive()
+        except TimeoutError:
+            self.exceeded = HTTPStatus.REQUEST_TIMEOUT
+            raise BodyRefused from None
+        self._is_coming = bool(message.get("more_body"))
         self._left -= len(message.get("body", b""))
         if self._left < 0:
-            self.exceeded = True
-            raise BodyTooLarge
+            self.exceeded = HTTPStatus.REQUEST_ENTITY_TOO_LARGE
+            raise BodyRefused
         return message
 
     async def send(self, message: Message) -> None:
-        if not self.exceeded:
+        if self.exceeded is None:
             await self._send(message)
 
 
 class BodyLimit:
-    """Refuses request bodies past a bound, announced or not."""
+    """Refuses request bodies past a bound, announced or not, and those that do not come to an end."""
 
-    def __init__(self, app: ASGIApp, most_bytes: int) -> None:
+    def __init__(self, app: ASGIApp, most_bytes: int, within_s: float) -> None:
         self.app = app
         self.most_bytes = most_bytes
+        self.within_s = within_s
 
     async def __call__(self, scope: Scope, receive: Receive, send: Send) -> None:
         """ASGI entry."""
@@ -74,19 +85,19 @@ class BodyLimit:
             return
         announced = Headers(scope=scope).get("content-length", "0")
         if not announced.isdigit() or int(announced) > self.most_bytes:
-            await self._refuse(scope, receive, send)
+            await self._refuse(HTTPStatus.REQUEST_ENTITY_TOO_LARGE, scope, receive, send)
             return
-        counter = _Counter(receive, send, self.most_bytes)
-        with contextlib.suppress(BodyTooLarge):
+        counter = _Counter(receive, send, self.most_bytes, self.within_s)
+        with contextlib.suppress(BodyRefused):
             await self.app(scope, counter.receive, counter.send)
-        if counter.exceeded:
-            await self._refuse(scope, receive, send)
+        if counter.exceeded is not None:
+            await self._refuse(counter.exceeded, scope, receive, send)
 
-    async def _refuse(self, scope: Scope, receive: Receive, send: Send) -> None:
+    async def _refuse(self, status: HTTPStatus, scope: Scope, receive: Receive, send: Send) -> None:
         response = problem_response(
-            HTTPStatus.REQUEST_ENTITY_TOO_LARGE,
-            f"A request body may have {self.most_bytes} bytes.",
-            "Send less in one request.",
+            status,
+            f"A request body may have {self.most_bytes} bytes and take {self.within_s:g} s.",
+            "Send less in one request." if status is HTTPStatus.REQUEST_ENTITY_TOO_LARGE else "Try again.",
         )
         await response(scope, receive, send)
 

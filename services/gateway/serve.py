@@ -14,6 +14,7 @@ from services.gateway.app import create_app, first_run_code
 from services.gateway.bus_control import BusControl
 from services.gateway.bus_feed import BusFeed, BusLink
 from services.gateway.certificate import Certificate, CertificateError, read_pair
+from services.gateway.connections import MOST_CONNECTIONS, BoundedHttp
 from services.gateway.database import DatabaseError
 from services.gateway.live.hub import LiveHub
 from services.gateway.parameters import GatewayParameters
@@ -69,6 +70,8 @@ def config_of(app: ASGIApp, settings: GatewaySettings, parameters: GatewayParame
         port=settings.http_port,
         ssl_certfile=settings.http_certificate,
         ssl_keyfile=settings.http_key,
+        http=BoundedHttp,
+        limit_concurrency=MOST_CONNECTIONS,
         server_header=False,
         access_log=False,
         log_config=None,

@@ -34,6 +34,7 @@ EVERYTHING = {
     "services/gateway/recycling/routes.py": "a session in the bin whose patient is not: no scope has both",
     "services/gateway/sessions/keeper.py": "what the services say about sessions, whoever they belong to",
     "services/gateway/sources/offered.py": "which sources other clinics have registered",
+    "services/cli/doctor/stored.py": "a command of whoever has the database itself",
     "services/cli/picture_visits.py": "pictures of a made-up patient",
     "services/cli/reprocess/storing.py": "a command of whoever has the database itself",
 }

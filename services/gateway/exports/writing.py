@@ -15,6 +15,14 @@ from services.gateway.problems import Problem
 from services.recordings.errors import ArchiveError
 
 _BLOCK = 1 << 18
+
+
+class Busy(Problem):
+    """Somebody else's file comes first."""
+
+    retry_after_s = 10
+
+
 _busy = threading.Lock()
 
 
@@ -24,7 +32,7 @@ def written(of: Recorded, name: str, options: Options) -> IO[bytes]:
     Raises Problem: another one is being written (503), or this one cannot be (409, 503).
     """
     if not _busy.acquire(blocking=False):
-        raise Problem(
+        raise Busy(
             HTTPStatus.SERVICE_UNAVAILABLE,
             "Another file is being written just now.",
             "Try again in some seconds; a session of an hour takes about a minute.",

@@ -7,13 +7,13 @@ from services.exports.fhir.source import FhirSource, PrintedReport, Recorded, Su
 from services.gateway.context import Gateway
 from services.gateway.problems import Problem
 from services.gateway.report.gather import recording_digest, report_source
+from services.gateway.report.printing import printed
 from services.gateway.sessions.records import get_session
 from services.gateway.sessions.shapes import stored_metrics
 from services.gateway.sessions.told import description_of
 from services.gateway.tables import PatientRow
 from services.report.assemble import make_report
 from services.report.content import Language
-from services.report.press import press
 
 
 def fhir_source(gateway: Gateway, session: str, site: str, language: Language | None) -> FhirSource:
@@ -48,7 +48,7 @@ def _subject(row: PatientRow) -> Subject:
 
 def _printed(gateway: Gateway, session: str, language: Language) -> PrintedReport:
     report = make_report(report_source(gateway, session), language)
-    return PrintedReport(press().pdf(report), language)
+    return PrintedReport(printed(report), language)
 
 
 def _recorded(gateway: Gateway, session: str, site: str) -> Recorded:

@@ -26,7 +26,7 @@ _FHIR: dict[int | str, dict[str, Any]] = {
     "/sessions/{session}/fhir",
     dependencies=READ,
     response_class=Response,
-    responses={**_FHIR, **documented(HTTPStatus.NOT_FOUND, HTTPStatus.CONFLICT)},
+    responses={**_FHIR, **documented(HTTPStatus.NOT_FOUND, HTTPStatus.CONFLICT, HTTPStatus.SERVICE_UNAVAILABLE)},
 )
 def read_bundle(
     session: SessionId,

@@ -169,7 +169,9 @@ class LiveHub:
         return session in self._sessions
 
     def _new_viewer(self, scope: Scope) -> Viewer:
-        if sum(self.audience.sizes().values()) >= self.parameters.most_viewers:
+        sizes = self.audience.sizes()
+        of_clinic = sizes.get(scope.clinic or "", 0)
+        if sum(sizes.values()) >= self.parameters.most_viewers or of_clinic >= self.parameters.most_viewers_of_clinic:
             raise TooManyViewers
         return self.audience.join(Viewer(self.parameters.event_queue, scope))
 

@@ -11,11 +11,11 @@ from services.gateway.access.rules import KNOWN, READ
 from services.gateway.context import Context, Gateway, SessionId
 from services.gateway.problems import Problem, documented
 from services.gateway.report.gather import report_source
+from services.gateway.report.printing import printed
 from services.report.assemble import make_report
 from services.report.catalogue import catalogue
 from services.report.content import Language, Report
 from services.report.html import page
-from services.report.press import press
 
 router = APIRouter(prefix="/v1", tags=["reports"])
 
@@ -37,6 +37,7 @@ class Wish:
 
 Asked = Annotated[Wish, Depends()]
 PROBLEMS = documented(HTTPStatus.NOT_FOUND, HTTPStatus.CONFLICT)
+PRINTING = documented(HTTPStatus.NOT_FOUND, HTTPStatus.CONFLICT, HTTPStatus.SERVICE_UNAVAILABLE)
 
 
 @router.get("/sessions/{session}/report", dependencies=READ, responses=PROBLEMS)
@@ -60,13 +61,13 @@ def read_report_page(session: SessionId, gateway: Context, asked: Asked) -> HTML
     "/sessions/{session}/report.pdf",
     dependencies=READ,
     response_class=Response,
-    responses={200: {"content": {PDF: {}}, "description": "The PDF"}, **PROBLEMS},
+    responses={200: {"content": {PDF: {}}, "description": "The PDF"}, **PRINTING},
 )
 def read_report_pdf(session: SessionId, gateway: Context, asked: Asked) -> Response:
     """The report as tagged PDF (PDF/UA-1). The same results give the same bytes."""
     report = _report(gateway, session, asked)
     name = f'inline; filename="{session}-{asked.language}.pdf"'
-    return Response(press().pdf(report), media_type=PDF, headers={"Content-Disposition": name})
+    return Response(printed(report), media_type=PDF, headers={"Content-Disposition": name})
 
 
 @router.get("/wording/{language}", dependencies=KNOWN, responses=documented(HTTPStatus.NOT_FOUND))
