@@ -6,7 +6,6 @@ from schemas.conditions import UNSAID
 from schemas.session import Anthropometry, HubDescription, Placement, SensorDescription, SessionDescription
 from schemas.vocabulary import LOWER_BODY_ESTIMATORS, Task
 from services.biomech.bones import SEGMENTS
-from services.biomech.forward_kinematics import segment_poses
 from services.estimation.alignment import Alignment
 from services.estimation.lower_body.lower_body_filter import Calibrated, LowerBodyFilter
 from services.estimation.parameters import EstimationParameters
@@ -31,7 +30,6 @@ def warm_up() -> None:
         running = LowerBodyFilter(session, sensors, calibrated, EstimationParameters().filter_of(session))
         for captured_ns in (0, 10_000_000):
             running.fuse(Tick(captured_ns, upright, everyone))
-        segment_poses(running.model, running.ekf.x[0])
 
 
 def _session(estimator: str, sensors: list[SensorDescription]) -> SessionDescription:

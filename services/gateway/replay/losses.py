@@ -1,6 +1,6 @@
 """When a sensor or a camera told nothing, out of raw messages that are looked at and not decoded."""
 
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Iterable, Sequence
 from typing import Literal, NamedTuple
 
 from schemas.session import SessionDescription
@@ -111,6 +111,6 @@ def sensor_parts(payload: bytes, count: int) -> Sequence[bytes]:
     return [b"" if part[:1] == b"]" else part[part.find(_VALUES) : part.find(b"}")] for part in parts]
 
 
-def marked(records: Iterable[Record]) -> Iterator[Record]:
-    """Raw messages that carry a mark of the operator."""
-    return (record for record in records if b'"marks":[{' in record.payload)
+def is_marked(record: Record) -> bool:
+    """Whether a raw message carries a mark of the operator."""
+    return b'"marks":[{' in record.payload

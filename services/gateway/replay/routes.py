@@ -98,14 +98,16 @@ def list_events(session: SessionId, gateway: Context, asked: Asked) -> EventsOut
     with gateway.transaction() as database:
         metrics = stored_metrics(get_session(database, session))
     phases = [] if metrics is None else phases_out(session, metrics).phases
+    marks = events.Marks(from_ns)
     with opened(gateway, session) as recording:
+        losses = events.lost(recording, from_ns, to_ns, marks)
         return EventsOut(
             session=session,
             **_page(asked.from_s, to_s, recording.end_ns),
             contacts=events.contacts(recording, from_ns, to_ns),
             phases=[each for each in phases if each.start_s < to_s and (each.end_s or to_s) > asked.from_s],
-            marks=events.marks(recording, from_ns, to_ns),
-            losses=events.lost(recording, from_ns, to_ns),
+            marks=marks.out(),
+            losses=losses,
         )
 
 

@@ -1,6 +1,6 @@
 """What each sensor and camera was like at a time of a recording, as a live page calls it."""
 
-from collections.abc import Collection, Sequence
+from collections.abc import Callable, Collection, Iterator, Sequence
 from typing import TypedDict
 
 from schemas.kinematics import Calibration, CameraStatus, SensorStatus
@@ -10,6 +10,7 @@ from schemas.vocabulary import SensorState
 from services.flow.message import decode_payload
 from services.gateway.replay.losses import SILENT_NS, Loss, losses
 from services.recordings.ranges import RecordedRanges
+from services.recordings.record import Record
 
 SECOND_NS = 1_000_000_000
 STATES = {"missing": SensorState.MISSING, "stuck": SensorState.STUCK}
@@ -58,11 +59,16 @@ def statuses_between(ranges: RecordedRanges, from_ns: int, to_ns: int) -> Status
     return Statuses(ranges.description, losses_between(ranges, from_ns, to_ns), _unused(ranges, to_ns))
 
 
-def losses_between(ranges: RecordedRanges, from_ns: int, to_ns: int) -> list[Loss]:
-    """Losses that go on within from <= time < to, ns. Raises DamagedRecording, OSError."""
+def losses_between(
+    ranges: RecordedRanges, from_ns: int, to_ns: int, seen: Callable[[Iterator[Record]], Iterator[Record]] = iter
+) -> list[Loss]:
+    """Losses that go on within from <= time < to, ns. `seen` may look at the raw messages, too, as they go by.
+
+    Raises DamagedRecording, OSError, and what `seen` raises.
+    """
     begin_ns = max(0, from_ns - SECOND_NS)
     found = [each for signal in (IMU, SKELETON) for each in ranges.find(signal, begin_ns, to_ns)]
-    every = losses(ranges.description, ranges.read(found), begin_ns, min(to_ns, ranges.end_ns))
+    every = losses(ranges.description, seen(ranges.read(found)), begin_ns, min(to_ns, ranges.end_ns))
     return [loss for loss in every if loss.end_ns is None or loss.end_ns > from_ns]
 
 

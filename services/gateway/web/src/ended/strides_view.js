@@ -6,6 +6,8 @@ import { addressOf } from "../pages.js";
 import { degrees, number } from "../units.js";
 
 const A_PAGE = 100;
+/** The archive closes the files of a session that has just ended. */
+const AGAIN_MS = 2000;
 const COLUMNS = ["Stride", "Side", "Begins#", "Time, s#", "Step length, m#", "Stride length, m#", "Speed, m/s#", "Stance, %#", "Turn, °#", "Counts"];
 
 /** @typedef {import("../api_types").Models["StrideOut"]} Stride */
@@ -54,7 +56,10 @@ export class StridesView {
       const page = await get("/sessions/{session}/strides", { session: this.id, offset: this.offset, limit: A_PAGE });
       if (!this.disposed) this.show(page);
     } catch (problem) {
-      if (!this.disposed) fill(this.place, el("p", { role: "status" }, /** @type {Error} */ (problem).message));
+      if (this.disposed) return;
+      const { message, status } = /** @type {import("../api.js").ApiProblem} */ (problem);
+      fill(this.place, el("p", { role: "status" }, message));
+      if (status === 409 || status === 0) this.timer = setTimeout(() => this.load(), AGAIN_MS);
     }
   }
 
@@ -97,6 +102,7 @@ export class StridesView {
 
   dispose() {
     this.disposed = true;
+    clearTimeout(this.timer);
   }
 }
 
