@@ -4,6 +4,14 @@ import { get, post } from "./api.js";
 import { el, fill, tell } from "./dom.js";
 import { labelled, passwordInput, textInput } from "./form_fields.js";
 
+/** What the gateway says in the address when a browser comes back from a service. @type {Record<string, string>} */
+const CAME_BACK = {
+  expired: "Signing in took too long, or was begun in another window. Try again.",
+  refused: "The service did not confirm who you are. Try again, or ask whoever runs it.",
+  no_account: "Nobody has an account here under your name there. Ask an administrator of your clinic.",
+  unavailable: "The service does not answer. Try again in a minute.",
+};
+
 /** @param {import("./pages.js").Place} place */
 export const open = (place) => new SignInView(place);
 
@@ -34,6 +42,7 @@ class SignInView {
         el("p", { class: "quiet" }, "No account, or the password is lost? Ask an administrator of your clinic."),
       ),
     );
+    tell(this.problem, CAME_BACK[new URLSearchParams(location.hash.split("?")[1]).get("problem") ?? ""] ?? "");
     this.login.focus();
     this.load();
   }
