@@ -11,6 +11,7 @@ from rich.table import Table
 from schemas.metrics import SessionMetrics
 from schemas.rhythm import KnownRhythm
 from schemas.session import WalkPath
+from services.cli.backup.command import backup, restore
 from services.cli.conditions import Conditioned, read_conditions
 from services.cli.console import err, out, told
 from services.cli.export import export
@@ -233,6 +234,8 @@ def doctor(
 
 
 app.command()(tune)
+app.command()(backup)
+app.command()(restore)
 
 
 def _positive(text: str) -> float:

@@ -36,23 +36,38 @@ class Shown:
     sessions: list[str]
 
 
-def visits(door: Door, data: Path, patience_s: float) -> Shown:
-    """Walk all visits as fast as the services follow, then move them apart in the database at `data`."""
+def visits(
+    door: Door, data: Path, patience_s: float, *, pace: float | None = None, database: str = "", name: str | None = None
+) -> Shown:
+    """Walk all visits, then move them apart in the database (a URL; empty: the one in the folder `data`).
+
+    All at once and as fast as the services follow; with a `pace`, times real time, one after the other. `name`: who it
+    is, for the directory. Raises TimeoutError.
+    """
     code = str(door.ask("patients", PERSON)["code"])
+    if name is not None:
+        door.ask(f"patients/{code}/name", {"name": name}, "PUT")
     for date, kind in TREATMENTS:
         door.ask(f"patients/{code}/treatments", {"date": date, "kind": kind})
-    walks = [_begin(door, code, speed) for speed in SPEEDS]
-    end = time.monotonic() + patience_s
-    while not all(_is_kept(door, walk) for walk in walks):
-        if time.monotonic() > end:
-            raise TimeoutError(f"the walks did not end within {patience_s:.0f} s")
-        time.sleep(0.5)
-    _move_apart(data, walks)
+    end, walks = time.monotonic() + patience_s, []
+    for speed in SPEEDS:
+        walks.append(_begin(door, code, speed, pace))
+        if pace is not None:
+            _wait(door, walks, end)
+    _wait(door, walks, end)
+    _move_apart(database or GatewaySettings(data_dir=data, database="").database_url, walks)
     return Shown(code, walks)
 
 
-def _begin(door: Door, code: str, speed: float) -> str:
-    wish = {"source": WALK.format(speed=speed), "speed": None, "patient": code, "conditions": SAID}
+def _wait(door: Door, walks: Sequence[str], end: float) -> None:
+    while not all(_is_kept(door, walk) for walk in walks):
+        if time.monotonic() > end:
+            raise TimeoutError(f"{len(walks)} walks did not end in time")
+        time.sleep(0.5)
+
+
+def _begin(door: Door, code: str, speed: float, pace: float | None) -> str:
+    wish = {"source": WALK.format(speed=speed), "speed": pace, "patient": code, "conditions": SAID}
     return str(door.ask("sessions", wish)["id"])
 
 
@@ -62,8 +77,8 @@ def _is_kept(door: Door, walk: str) -> bool:
     return door.ask(f"sessions/{walk}")["state"] in DONE and bool(files) and all(each["sha256"] for each in files)
 
 
-def _move_apart(data: Path, walks: Sequence[str]) -> None:
-    database = open_database(GatewaySettings(data_dir=data, database="").database_url)
+def _move_apart(url: str, walks: Sequence[str]) -> None:
+    database = open_database(url)
     try:
         with database.transaction(EVERYTHING) as records:
             for place, walk in enumerate(reversed(walks)):

@@ -24,10 +24,11 @@ from services.cli.backup.contents import (
 from services.flow.software import SOFTWARE
 from services.gateway import revisions
 from services.gateway.audit.heads import HEADS_FILE, KEY_FILE
+from services.gateway.erasure.tombstones import FILE as ERASURES
 from services.gateway.settings import GatewaySettings
 from services.recordings.folder import session_folders
 
-OWN_FILES = ("erasures.jsonl", HEADS_FILE, KEY_FILE)
+OWN_FILES = (ERASURES, HEADS_FILE, KEY_FILE)
 """What only the gateway has: whom to forget again, and where the audit ended."""
 BLOCK = 1 << 20
 Tell = Callable[[str, int, int], None]

@@ -20,10 +20,10 @@ from services.cli.backup.contents import (
     read_contents,
 )
 from services.gateway import revisions
+from services.gateway.erasure.tombstones import FILE as ERASURES
 from services.gateway.settings import GatewaySettings
 from services.recordings.folder import session_folders
 
-ERASURES = "erasures.jsonl"
 STAGE = ".restoring"
 BLOCK = 1 << 20
 Tell = Callable[[str, int, int], None]
