@@ -3,7 +3,7 @@
 from http import HTTPStatus
 from typing import Annotated
 
-from fastapi import APIRouter, Path
+from fastapi import APIRouter, Path, Request
 from sqlalchemy.orm import Session
 
 from services.gateway.access import sign_ins
@@ -17,6 +17,7 @@ from services.gateway.accounts.account_models import AccountChange, AccountIn, A
 from services.gateway.accounts.attempts import note_success
 from services.gateway.accounts.browser import provider_of
 from services.gateway.accounts.routes import refuse_weak
+from services.gateway.audit.noting import Noted, note
 from services.gateway.context import Limit, Offset, Parts
 from services.gateway.problems import Problem, documented
 from services.gateway.settings import GatewaySettings
@@ -37,7 +38,7 @@ def list_accounts(caller: Person, gateway: Parts, offset: Offset = 0, limit: Lim
 
 
 @router.post("", status_code=HTTPStatus.CREATED, dependencies=ADMINISTER, responses=REFUSALS)
-def create_account(body: AccountIn, caller: Person, gateway: Parts) -> AccountOut:
+def create_account(body: AccountIn, caller: Person, request: Request, gateway: Parts) -> AccountOut:
     """Make an account: with a password to hand over, or for somebody who signs in with the organisation's service."""
     kept = None
     if body.password is not None:
@@ -52,13 +53,18 @@ def create_account(body: AccountIn, caller: Person, gateway: Parts) -> AccountOu
             raise Problem(HTTPStatus.CONFLICT, "There is an account of that name.", "Choose another name.")
         row = records.add_account(database, body.login, Role(body.role), clinic, kept, site_admin=body.site_admin)
         row.issuer = _issuer(gateway.settings, body.provider)
+        note(request, Noted(object=f"account={row.id} role={row.role} clinic={clinic} site_admin={row.site_admin}"))
         database.flush()
         return _shape(database, [row], gateway.settings)[0]
 
 
 @router.patch("/{account}", dependencies=ADMINISTER, responses=REFUSALS)
-def change_account(account: AccountId, body: AccountChange, caller: Person, gateway: Parts) -> AccountOut:
+def change_account(
+    account: AccountId, body: AccountChange, caller: Person, request: Request, gateway: Parts
+) -> AccountOut:
     """Give an account another role or clinic, or close or open it. A closed one is signed out everywhere."""
+    wish = body.model_dump(mode="json", exclude_none=True)
+    note(request, Noted(object=" ".join(f"{name}={value}" for name, value in wish.items())))
     with gateway.database.transaction(EVERYTHING) as database:
         records.one_at_a_time(database)
         row = administering.get_another(database, caller, account)

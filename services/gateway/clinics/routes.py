@@ -4,7 +4,7 @@ from datetime import UTC, datetime
 from http import HTTPStatus
 from typing import Annotated
 
-from fastapi import APIRouter, Path
+from fastapi import APIRouter, Path, Request
 from sqlalchemy import func, select
 from sqlalchemy.orm import Session
 
@@ -15,6 +15,7 @@ from services.gateway.access.scope import EVERYTHING
 from services.gateway.access.tables import AccountRow
 from services.gateway.accounts.administering import OnlySiteAdmins
 from services.gateway.accounts.records import one_at_a_time
+from services.gateway.audit.noting import Noted, note
 from services.gateway.clinics.models import ClinicChange, ClinicIn, ClinicOut, ClinicPage
 from services.gateway.context import Limit, Offset, Parts
 from services.gateway.problems import Problem, documented, not_found
@@ -43,8 +44,9 @@ def list_clinics(caller: Person, gateway: Parts, offset: Offset = 0, limit: Limi
     dependencies=ADMINISTER,
     responses=documented(HTTPStatus.FORBIDDEN, HTTPStatus.CONFLICT),
 )
-def create_clinic(body: ClinicIn, caller: Person, gateway: Parts) -> ClinicOut:
+def create_clinic(body: ClinicIn, caller: Person, request: Request, gateway: Parts) -> ClinicOut:
     """Add a clinic to the site; for administrators of the site."""
+    note(request, Noted(object=f"clinic={body.id} keep_days={body.keep_days}"))
     if not caller.site_admin:
         raise OnlySiteAdmins
     with gateway.database.transaction(EVERYTHING) as database:
@@ -58,8 +60,12 @@ def create_clinic(body: ClinicIn, caller: Person, gateway: Parts) -> ClinicOut:
 
 
 @router.patch("/{clinic}", dependencies=ADMINISTER, responses=documented(HTTPStatus.FORBIDDEN, HTTPStatus.NOT_FOUND))
-def change_clinic(clinic: ClinicInPath, body: ClinicChange, caller: Person, gateway: Parts) -> ClinicOut:
+def change_clinic(
+    clinic: ClinicInPath, body: ClinicChange, caller: Person, request: Request, gateway: Parts
+) -> ClinicOut:
     """Name a clinic, or say how long it keeps recordings. What is past that is removed by the next housekeeping."""
+    if "keep_days" in body.model_fields_set:
+        note(request, Noted(object=f"keep_days={body.keep_days}"))
     with gateway.database.transaction(EVERYTHING) as database:
         row = database.get(ClinicRow, clinic)
         if row is None or not (caller.site_admin or clinic == caller.clinic):

@@ -5,7 +5,7 @@ from datetime import UTC, datetime
 from http import HTTPStatus
 from typing import Annotated
 
-from fastapi import APIRouter, Path
+from fastapi import APIRouter, Path, Request
 from sqlalchemy import func, select
 
 from services.gateway.access.roles import Permission
@@ -13,6 +13,7 @@ from services.gateway.access.rules import READ, needs
 from services.gateway.access.scope import EVERYTHING
 from services.gateway.access.tables import DeviceRow
 from services.gateway.accounts.records import one_at_a_time
+from services.gateway.audit.noting import Noted, note
 from services.gateway.context import Context, Limit, Offset
 from services.gateway.devices.models import DeviceChange, DeviceIn, DeviceOut, DevicePage
 from services.gateway.devices.records import check_free
@@ -37,7 +38,7 @@ def list_devices(gateway: Context, offset: Offset = 0, limit: Limit = 50) -> Dev
 
 
 @router.post("", status_code=HTTPStatus.CREATED, dependencies=ADMINISTER, responses=documented(HTTPStatus.CONFLICT))
-def create_device(body: DeviceIn, gateway: Context) -> DeviceOut:
+def create_device(body: DeviceIn, request: Request, gateway: Context) -> DeviceOut:
     """Register a device of the clinic. A source that is registered is offered to no other clinic."""
     with gateway.database.transaction(EVERYTHING) as database:
         one_at_a_time(database)
@@ -47,6 +48,7 @@ def create_device(body: DeviceIn, gateway: Context) -> DeviceOut:
             **body.model_dump(),
         )  # fmt: skip
         database.add(row)
+        note(request, Noted(object=f"device={row.id}"))
         return _shape(row)
 
 

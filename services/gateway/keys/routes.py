@@ -4,7 +4,7 @@ from datetime import UTC, datetime
 from http import HTTPStatus
 from typing import Annotated
 
-from fastapi import APIRouter, Path
+from fastapi import APIRouter, Path, Request
 from sqlalchemy import func, select
 from sqlalchemy.orm import Session
 
@@ -14,6 +14,7 @@ from services.gateway.access.roles import Permission, Role
 from services.gateway.access.rules import needs
 from services.gateway.access.scope import EVERYTHING
 from services.gateway.access.tables import AccountRow, ApiKeyRow
+from services.gateway.audit.noting import Noted, note
 from services.gateway.context import Limit, Offset, Parts
 from services.gateway.keys.models import KeyIn, KeyOut, KeyPage, NewKeyOut
 from services.gateway.problems import documented, not_found
@@ -36,12 +37,13 @@ def list_keys(caller: Person, gateway: Parts, offset: Offset = 0, limit: Limit =
 
 
 @router.post("", status_code=HTTPStatus.CREATED, dependencies=ADMINISTER, responses=documented(HTTPStatus.FORBIDDEN))
-def create_key(body: KeyIn, caller: Person, gateway: Parts) -> NewKeyOut:
+def create_key(body: KeyIn, caller: Person, request: Request, gateway: Parts) -> NewKeyOut:
     """Make a key for a machine of the clinic. Its text is in this answer and nowhere else."""
     now = datetime.now(UTC)
     with gateway.database.transaction(EVERYTHING) as database:
         row, text = add_key(database, body.name, Role(body.role), caller.clinic, caller.account, now, body.days)
         database.flush()
+        note(request, Noted(object=f"key={row.id} role={row.role} days={body.days}"))
         return NewKeyOut(**_shape(database, row).model_dump(), key=text)
 
 

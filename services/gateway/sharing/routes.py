@@ -4,7 +4,7 @@ from datetime import UTC, datetime
 from http import HTTPStatus
 from typing import Annotated
 
-from fastapi import APIRouter, Depends, Path, Query
+from fastapi import APIRouter, Depends, Path, Query, Request
 from sqlalchemy import select
 from sqlalchemy.orm import Session
 
@@ -14,6 +14,7 @@ from services.gateway.access.rules import WORK
 from services.gateway.access.statements import OutOfScope
 from services.gateway.access.tables import AccountRow, ShareRow
 from services.gateway.accounts.records import find_login, one_at_a_time
+from services.gateway.audit.noting import Noted, note
 from services.gateway.context import Context, Gateway, PatientCode
 from services.gateway.patients.records import get_patient
 from services.gateway.problems import Problem, documented, not_found
@@ -55,8 +56,9 @@ def list_shares(code: PatientCode, gateway: Context) -> SharesOut:
 
 
 @router.post("/patients/{code}/shares", status_code=HTTPStatus.CREATED, dependencies=SHARE, responses=REFUSALS)
-def share_patient(code: PatientCode, body: ShareIn, caller: Person, gateway: Context) -> ShareOut:
+def share_patient(code: PatientCode, body: ShareIn, caller: Person, request: Request, gateway: Context) -> ShareOut:
     """Let a colleague of another clinic see a patient of one's own, and start sessions with them. Twice is once."""
+    note(request, Noted(object=f"account={body.account}"))
     with gateway.transaction() as database:
         one_at_a_time(database)
         shares = {row.account_id: row for row in _shares(database, gateway, code)}

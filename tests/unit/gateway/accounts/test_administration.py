@@ -135,6 +135,18 @@ def test_a_password_from_the_administrator_signs_out_and_opens_what_guessing_clo
     assert elsewhere.status_code == CONFLICT
 
 
+def test_the_audit_has_who_was_given_what(people, clinic):
+    made = people.chief.post("/v1/accounts", json=new()).json()["id"]
+    people.chief.patch(f"/v1/accounts/{made}", json={"role": "admin", "clinic": None})
+    people.chief.put(f"/v1/accounts/{made}/password", json={"password": NEXT})
+    told = [(each.action, each.object) for each in clinic.audit() if each.actor == people.chief.account]
+    assert told == [
+        ("create_account", f"account={made} role=therapist clinic=main site_admin=False"),
+        ("change_account", f"account={made} role=admin"),
+        ("set_password", f"account={made}"),
+    ]
+
+
 def test_nobody_changes_their_own_account(people):
     for browser in (people.admin, people.chief):
         for body in ({"disabled": True}, {"role": "viewer"}, {"site_admin": False}):

@@ -105,6 +105,7 @@ class TestShares:
         self, clinic, therapist, colleague, code
     ):
         bystander = clinic.browser(Role.THERAPIST, "north")
+        granting = (therapist.account, code, f"account={colleague.account}")
         path = f"/v1/patients/{code}"
         assert colleague.get(path).status_code == NOT_FOUND
         made = self.share(therapist, code, colleague)
@@ -116,6 +117,8 @@ class TestShares:
         assert therapist.delete(f"{path}/shares/{colleague.account}").status_code == HTTPStatus.NO_CONTENT
         assert colleague.get(path).status_code == NOT_FOUND
         assert therapist.delete(f"{path}/shares/{colleague.account}").status_code == NOT_FOUND
+        told = [(each.actor, each.patient, each.object) for each in clinic.audit() if "share" in each.action]
+        assert told.count(granting) == 4, "given twice, ended, and once more in vain"
 
     def test_who_a_patient_was_shared_with_does_not_share_them_on(self, clinic, therapist, colleague, code):
         self.share(therapist, code, colleague)

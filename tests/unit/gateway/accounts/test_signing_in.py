@@ -192,7 +192,7 @@ def test_what_is_easily_guessed_is_not_taken(password, weak):
 
 class TestFirstRun:
     def body(self, clinic, login="chief", password=PASSWORD):
-        return {"code": first_run.write_code(clinic.gateway.settings.data_dir), "login": login, "password": password}
+        return {"code": first_run.write_code(clinic.gateway.settings.own_dir), "login": login, "password": password}
 
     def test_the_code_makes_one_administrator_of_the_site(self, clinic):
         browser = clinic.browser()
@@ -201,7 +201,7 @@ class TestFirstRun:
         assert answer.status_code == HTTPStatus.CREATED
         assert (answer.json()["role"], answer.json()["site_admin"]) == ("admin", True)
         assert browser.get("/v1/accounts").json()["total"] == 1
-        assert not first_run.code_file(clinic.gateway.settings.data_dir).exists()
+        assert not first_run.code_file(clinic.gateway.settings.own_dir).exists()
         again = clinic.browser().post("/v1/first-run", json=self.body(clinic, "second"))
         assert again.status_code == HTTPStatus.CONFLICT
 
