@@ -11,6 +11,7 @@ from rich.table import Table
 from schemas.metrics import SessionMetrics
 from schemas.rhythm import KnownRhythm
 from schemas.session import WalkPath
+from services.cli.audit import audit
 from services.cli.backup.command import backup, restore
 from services.cli.conditions import Conditioned, read_conditions
 from services.cli.console import err, out, told
@@ -178,6 +179,7 @@ app.command()(send_skeletons)
 app.command()(export)
 app.command()(report)
 app.command()(reprocess)
+app.add_typer(audit, name="audit")
 
 
 @app.command(context_settings={"ignore_unknown_options": True})

@@ -47,6 +47,7 @@ from services.gateway.live.routes import router as live_routes
 from services.gateway.monitoring.requests import CountRequests, RequestNumbers
 from services.gateway.monitoring.routes import router as monitoring
 from services.gateway.monitoring.site import site_registry
+from services.gateway.patients.record_routes import router as records
 from services.gateway.patients.routes import router as patients
 from services.gateway.problems import ProblemOut
 from services.gateway.progress.routes import router as progress
@@ -82,6 +83,7 @@ ROUTERS = (
     names,
     recycling,
     erasure,
+    records,
     roster,
     visits,
     progress,

@@ -31,10 +31,12 @@ EVERYTHING = {
     "services/gateway/keys/routes.py": "who made a key may work in another clinic by now",
     "services/gateway/live/routes.py": "entries of the audit",
     "services/gateway/monitoring/site.py": "numbers about the site, none about a patient",
+    "services/gateway/patients/record_routes.py": "two records of one person, with what of them is in the bin",
     "services/gateway/recycling/routes.py": "a session in the bin whose patient is not: no scope has both",
     "services/gateway/sessions/keeper.py": "what the services say about sessions, whoever they belong to",
     "services/gateway/sources/offered.py": "which sources other clinics have registered",
     "services/cli/doctor/stored.py": "a command of whoever has the database itself",
+    "services/cli/audit.py": "a command of whoever has the database itself",
     "services/cli/picture_visits.py": "pictures of a made-up patient",
     "services/cli/reprocess/storing.py": "a command of whoever has the database itself",
 }
@@ -43,6 +45,7 @@ EVERYTHING = {
 OF_PATIENTS_TOO = {
     "services/gateway/monitoring/site.py": "counts sessions by state",
     "services/gateway/erasure/housekeeping.py": "the bin and the retention of every clinic",
+    "services/gateway/patients/record_routes.py": "two records of one person, with what of them is in the bin",
     "services/gateway/recycling/routes.py": "a session in the bin whose patient is not: no scope has both",
     "services/cli/picture_visits.py": "pictures of a made-up patient",
 }

@@ -3,7 +3,7 @@
 import { get, post } from "./api.js";
 import { el } from "./dom.js";
 import { askForm } from "./form_dialog.js";
-import { labelled, passwordInput, textInput } from "./form_fields.js";
+import { choice, labelled, passwordInput } from "./form_fields.js";
 
 /**
  * Ask for the password, and a reason where one is wanted; then do it.
@@ -11,17 +11,18 @@ import { labelled, passwordInput, textInput } from "./form_fields.js";
  * @param {string} wish.title
  * @param {string} wish.about what will happen
  * @param {string} wish.action word on the button
- * @param {boolean} [wish.reason] whether a reason is asked for
+ * @param {[string, string][]} [wish.reasons] value and words of the reasons to choose from, where one is asked for
  * @param {Node[]} [wish.fields] what else is asked, before the reason
- * @param {(reason: string) => Promise<unknown>} wish.act told the reason, empty where none was asked for
+ * @param {(reason: string) => Promise<unknown>} wish.act told the value of the reason, empty where none was asked for
  * @returns {Promise<boolean>} whether it was done
  */
-export async function confirmPassword({ title, about, action, reason = false, fields = [], act }) {
+export async function confirmPassword({ title, about, action, reasons = [], fields = [], act }) {
   const { provider } = await get("/me");
-  const why = textInput({ required: true, maxlength: 200 });
+  const why = choice([["", "Choose one"], ...reasons]);
+  why.required = true;
   const password = passwordInput("current-password");
   const asked = [...fields];
-  if (reason) asked.push(labelled("Reason", why, "Kept in the audit. No names, no findings."));
+  if (reasons.length > 0) asked.push(labelled("Reason", why, "Kept in the audit for good."));
   asked.push(provider ? elsewhere(provider) : labelled("Your password", password));
   return askForm({
     title,
@@ -31,7 +32,7 @@ export async function confirmPassword({ title, about, action, reason = false, fi
     danger: true,
     act: async () => {
       if (!provider) await post("/sign-in/confirmation", { body: { password: password.value } });
-      await act(reason ? why.value.trim() : "");
+      await act(why.value);
     },
   });
 }

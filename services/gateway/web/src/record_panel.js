@@ -12,6 +12,20 @@ const ERASE =
   "Sessions, recordings, numbers, name and shares are erased on every disk that this site writes, and from backups when " +
   "they are restored. What stays is an entry in the audit. This can not be undone.";
 
+/** @type {[string, string][]} */
+const WHY_MERGE = [
+  ["registered_twice", "Registered twice"],
+  ["code_lost", "The first code was lost"],
+];
+
+/** @type {[string, string][]} */
+const WHY_ERASE = [
+  ["requested_by_patient", "The patient asked for it"],
+  ["consent_withdrawn", "Consent was withdrawn"],
+  ["registered_by_mistake", "Registered by mistake"],
+  ["test_entry", "It was a test"],
+];
+
 export class RecordPanel {
   /** @param {string} code @param {{may: string[]}} me */
   constructor(code, { may }) {
@@ -48,7 +62,7 @@ export class RecordPanel {
       title: `Join ${this.code} with another code`,
       about: MERGE,
       action: "Join",
-      reason: true,
+      reasons: WHY_MERGE,
       fields: [labelled("The code that stays", into)],
       act: (reason) => post("/patients/{code}/merge", { code: this.code, body: { into: target(), reason } }),
     });
@@ -61,7 +75,7 @@ export class RecordPanel {
       title: `Erase ${this.code} for good`,
       about: ERASE,
       action: "Erase for good",
-      reason: true,
+      reasons: WHY_ERASE,
       fields: [labelled("Type the code once more", typed)],
       act: async (reason) => {
         if (typed.value.trim().toUpperCase() !== this.code) throw new Error(`The code is ${this.code}. Type it to be sure whom you erase.`);
