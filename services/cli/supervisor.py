@@ -112,11 +112,15 @@ class Supervisor:
     ) -> None:
         """Wait for every service's token, telling who is missing and who of them compiles what it runs.
 
-        Raises NotReady with the last words of those that are missing.
+        While one compiles, the clock stands still: how long that takes is the machine's business. Raises NotReady with
+        the last words of those that are missing.
         """
         end = time.monotonic() + timeout_s
         while missing := [child for child in self._children.values() if not child.instances]:
-            tell([child.name for child in missing], [child.name for child in missing if child.compiling])
+            compiling = [child.name for child in missing if child.compiling]
+            tell([child.name for child in missing], compiling)
+            if compiling:
+                end += LOOK_S
             if time.monotonic() >= end:
                 words = "\n".join(f"  {child.name} | {line}" for child in missing for line in child.last_words)
                 names = ", ".join(child.name for child in missing)
@@ -147,6 +151,7 @@ class Supervisor:
             child.process.kill()
             child.process.wait()
             child.instances.clear()
+            child.compiling = False
 
     def _spawn(self, name: str) -> subprocess.Popen[str]:
         environment = {
@@ -211,6 +216,7 @@ class Supervisor:
         if now >= child.restart_at:
             child.restart_at = None
             child.restarts += 1
+            child.compiling = False
             child.started = now
             child.process = self._spawn(child.name)
 

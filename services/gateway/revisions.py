@@ -18,7 +18,7 @@ def present(url: str) -> str | None:
     if address.get_backend_name() == "sqlite":
         # By its URI a file is opened for reading alone; the path alone would make one that is missing.
         address = address.set(database=f"file:{address.database}", query={"mode": "ro", "uri": "true"})
-    engine = create_engine(address)
+    engine = create_engine(address, hide_parameters=True)
     try:
         with engine.connect() as connection:
             return MigrationContext.configure(connection).get_current_revision()

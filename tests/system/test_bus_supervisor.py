@@ -50,8 +50,10 @@ def start_stack(*services: str) -> tuple[subprocess.Popen[str], list[int]]:
 
 def test_children_come_back_and_stop_in_order():
     lines: list[str] = []
+    waited: list[list[str]] = []
     with Supervisor(NODES, FREE, output=lines.append) as supervisor:
-        supervisor.wait_until_ready(30.0)
+        supervisor.wait_until_ready(30.0, lambda missing, _compiling: waited.append(missing))
+        assert waited[0] == NODES, "whoever starts it is told who is waited for"
         first = supervisor.pid("segmentation")
         supervisor.kill("segmentation")
         assert not is_running(first)

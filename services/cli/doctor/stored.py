@@ -79,25 +79,27 @@ def examine_archive(data_dir: Path, *, deep: bool) -> Finding:
     """Whether recordings are closed and are what their manifests say: by size, or `deep` by checksum."""
     folders = session_folders(data_dir)
     live = _is_recording(data_dir)
-    wrong: list[str] = []
-    for folder in folders:
-        wrong += _faults(folder, live=live, deep=deep)
+    wrong = [fault for folder in folders for fault in _faults(folder, deep=deep)]
     if wrong:
         shown = "; ".join(wrong[:MOST_NAMED]) + (f"; {len(wrong) - MOST_NAMED} more" if len(wrong) > MOST_NAMED else "")
         return Finding("Archive", False, f"{len(folders)} sessions; {shown}")
+    unclosed = [] if live else [folder for folder in folders if _is_open(folder)]
+    if unclosed:
+        says = f"{len(unclosed)} of {len(folders)} sessions were not closed; start the archive, which closes them"
+        return Finding("Archive", None, says)
     how = "checksums right" if deep else "sizes right; --deep compares checksums"
     return Finding("Archive", True, f"{len(folders)} sessions, all closed files there, {how}")
 
 
-def _faults(folder: Path, *, live: bool, deep: bool) -> Iterator[str]:
+def _is_open(folder: Path) -> bool:
+    manifest = read_manifest(folder)
+    return manifest is None or manifest.state in STILL_OPEN or any(name.part for name, _ in segment_files(folder))
+
+
+def _faults(folder: Path, *, deep: bool) -> Iterator[str]:
     manifest = read_manifest(folder)
     if manifest is None:
-        if not live:
-            yield f"{folder.name}: no readable manifest; start the archive, which makes it anew"
         return
-    is_open = any(name.part for name, _ in segment_files(folder)) or manifest.state in STILL_OPEN
-    if is_open and not live:
-        yield f"{folder.name}: was not closed; start the archive, which closes it"
     if deep:
         yield from (f"{folder.name}: {fault}" for fault in verify_recording(folder))
         return

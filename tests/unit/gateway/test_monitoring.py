@@ -1,6 +1,7 @@
 """Numbers for Prometheus: complete, and never about a person."""
 
 import re
+from datetime import UTC, datetime
 from types import SimpleNamespace
 
 import pytest
@@ -8,6 +9,7 @@ from prometheus_client.parser import text_string_to_metric_families as parsed
 from sqlalchemy.exc import OperationalError
 
 from schemas.health import Reason, Rejection, SessionHealth, StreamCount
+from services.gateway.access.keys import add_key
 from services.gateway.access.roles import Role
 from services.gateway.access.scope import EVERYTHING
 from services.gateway.app import create_app
@@ -49,6 +51,20 @@ def test_numbers_are_for_whoever_operates(stranger, role, status):
     assert stranger.get("/metrics").status_code == 401
     people.sign_in(stranger, role)
     assert stranger.get("/metrics").status_code == status
+
+
+def test_prometheus_comes_with_a_key_and_leaves_no_trace_in_the_audit(stranger, gateway):
+    now = datetime.now(UTC)
+    with gateway.database.transaction(EVERYTHING) as database:
+        _, key = add_key(database, "prometheus", Role.SERVICE, "main", None, now, days=1)
+    bearer = {"Authorization": f"Bearer {key}"}
+    lengths = []
+    for _ in range(2):
+        text = stranger.get("/metrics", headers=bearer).text
+        lengths.append(next(line for line in text.splitlines() if line.startswith("ambula_audit_entries ")))
+    assert lengths[0] == lengths[1]
+    assert key not in text
+    assert stranger.get("/metrics", headers={"Authorization": f"Bearer {key}x"}).status_code == 401
 
 
 def test_services_as_they_report(client, hub):
