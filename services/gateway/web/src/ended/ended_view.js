@@ -69,7 +69,7 @@ export class EndedView {
     const menu = el(
       "details",
       { class: "export-menu", ontoggle: () => this.showExports() },
-      el("summary", { class: "button" }, "Export"),
+      el("summary", {}, "Export"),
       this.exports,
     );
     return el("nav", { class: "parts-nav", "aria-label": "Session" }, ...links, el("span", { class: "spring" }), menu);

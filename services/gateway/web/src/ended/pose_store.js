@@ -4,6 +4,7 @@ import { get } from "../api.js";
 
 export const CHUNK_S = 10;
 export const RATE_HZ = 25;
+const BEFORE_S = 8;
 const KEPT = 12;
 const AGAIN_MS = 2000;
 
@@ -25,12 +26,12 @@ export class PoseStore {
     this.onTrouble = onTrouble;
   }
 
-  /** Have the pictures at a time, and those that come after. @param {number} at_s */
+  /** Have the pictures at a time, those that curves show before it, and those that come after. @param {number} at_s */
   need(at_s) {
     const place = placeOf(at_s);
     this.ask(place);
-    if (at_s % CHUNK_S > CHUNK_S / 4 || this.chunks.get(place)) this.ask(place + 1);
-    if (at_s % CHUNK_S < 1) this.ask(place - 1);
+    this.ask(placeOf(at_s - BEFORE_S));
+    this.ask(place + 1);
   }
 
   /** Whether the picture of a time is there. @param {number} at_s */

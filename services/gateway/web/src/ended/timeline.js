@@ -144,11 +144,11 @@ export class Timeline {
       });
       return svg("path", { d: d.join(""), ...LOOKS[look], class: `look-${look}` });
     });
-    const words = parts.flatMap(({ from_s, to_s, text }) => {
+    const words = parts.flatMap(({ from_s, to_s, look, text }) => {
       const [left, right] = [this.place(from_s), this.place(to_s ?? this.end_s)];
       const fits = text && right - left > 6.2 * text.length;
       if (!fits) return [];
-      const at = { x: left + 4, y: top + height - 3.5, "font-size": 11, fill: INK };
+      const at = { x: left + 4, y: top + height - 3.5, "font-size": 11, fill: look === "lost" ? PANEL : INK };
       return [svg("text", at, text)];
     });
     return [...paths, ...words];
