@@ -40,11 +40,12 @@ demo: install ## synthetic patients (and a recorded walk where there is one), li
 test: install ## all tests, in two processes (WORKERS=1 for one)
 	$(BIN)/python -m pytest --numprocesses $(WORKERS) --dist loadgroup --no-loadscope-reorder
 
-check: install ## lint, types, import contracts
+check: install ## lint, types (the pages against openapi.json, too), import contracts
 	$(BIN)/ruff check .
 	$(BIN)/ruff format --check .
 	$(BIN)/mypy
 	$(BIN)/lint-imports --no-logo
+	cd $(WEB) && PATH="$$PATH:$(CURDIR)/$(BIN)" && npm run --silent check
 	$(BIN)/python -m pytest -q tests/architecture
 
 bench-%: install ## a scoreboard

@@ -1,5 +1,5 @@
 // The API page. The validator badge would ask a foreign host, so it is off.
-window.SwaggerUIBundle({
+/** @type {any} */ (window).SwaggerUIBundle({
   url: "/v1/openapi.json",
   dom_id: "#api",
   validatorUrl: null,

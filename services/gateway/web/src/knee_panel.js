@@ -135,10 +135,10 @@ class Scale {
     this.covered.setAttribute("visibility", least === null ? "hidden" : "visible");
     this.now.setAttribute("visibility", value === null ? "hidden" : "visible");
     if (least !== null) {
-      this.covered.setAttribute("x", place(least));
-      this.covered.setAttribute("width", Math.max(2, place(largest) - place(least)));
+      this.covered.setAttribute("x", String(place(least)));
+      this.covered.setAttribute("width", String(Math.max(2, place(largest) - place(least))));
     }
-    if (value !== null) this.now.setAttribute("cx", place(value));
+    if (value !== null) this.now.setAttribute("cx", String(place(value)));
   }
 }
 

@@ -87,7 +87,7 @@ export class MeasuredView {
     const counts = seen.map((side) => `${side === "left" ? "L" : "R"} ${sides[side].strides}`).join(", ");
     const name = jointName(joint)[0];
     const curve = panel(name, "mean ± SD", host);
-    curve.firstChild.append(
+    curve.firstElementChild.append(
       el("span", { class: "spring" }),
       ...seen.map(sample),
       el("span", { class: "quiet" }, `${counts} strides`),

@@ -114,6 +114,14 @@ export const PAGES = [
     load: () => import("./patient_view.js"),
   },
   {
+    name: "bin",
+    pattern: "bin",
+    title: "Recycle bin",
+    permission: "work",
+    nav: "Recycle bin",
+    load: () => import("./bin_view.js"),
+  },
+  {
     name: "system",
     pattern: "system",
     title: "System",

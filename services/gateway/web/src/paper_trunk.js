@@ -39,6 +39,6 @@ export class PaperTrunk {
     if (!head) return;
     this.head.setAttribute("cx", head[0]);
     this.head.setAttribute("cy", head[1]);
-    this.head.setAttribute("r", HEAD_RADIUS_M * scale);
+    this.head.setAttribute("r", String(HEAD_RADIUS_M * scale));
   }
 }

@@ -82,6 +82,7 @@ export const isGivenUp = (phase) => phase.end_s !== null && phase.end_std_s === 
 /**
  * From the start of the `first` part to the end of the `last`; `to` is null, and so is the deviation, until that has
  * ended. A timed up and go that was seen late counts from what was seen first; a timed zone does not.
+ * @param {any[]} phases @param {{ first: string, last: string }} [task]
  */
 export function extentOf(phases, { first: begin, last: finish } = DONE_STEPWISE.timed_up_and_go) {
   const first = phases.find((each) => each.phase === begin) ?? (begin === finish ? undefined : phases[0]);

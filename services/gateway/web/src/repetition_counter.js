@@ -12,6 +12,7 @@ export class RepetitionCounter {
     this.newest = new Map();
     this.count = el("output", { class: "count", "aria-live": "polite" }, "0");
     this.name = el("span", { class: "quiet" });
+    /** @type {Record<string, HTMLElement>} */
     this.cells = { range: el("dd"), peak: el("dd"), flexing: el("dd"), extending: el("dd"), tempo: el("dd") };
     this.facts = el(
       "dl",

@@ -34,6 +34,7 @@ export class Router {
     const host = el("div", { class: `page ${found?.page.name ?? "nowhere"}` });
     this.setTitle(found?.page.title ?? "No such page");
     fill(this.content, host);
+    this.content.dataset.address = location.hash;
     if (moved) this.focusHeading(host);
     if (!found) return fill(host, nothing("There is no such page", "The address may be an old one."));
     const { page, params } = found;

@@ -63,7 +63,7 @@ export class TreatmentsPanel {
 
   add(event) {
     event.preventDefault();
-    return this.attempt(() => post("/patients/{code}/treatments", { code: this.code, body: { date: this.date.value, kind: this.kind.value } }));
+    return this.attempt(() => post("/patients/{code}/treatments", { code: this.code, body: { date: this.date.value, kind: /** @type {any} */ (this.kind.value) } }));
   }
 
   async attempt(action) {

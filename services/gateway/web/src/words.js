@@ -173,7 +173,7 @@ export const STALE_S = 1;
  * @returns {{word: string, tone: "lost"|"check"|"wait"|"good", light: string}}
  */
 export function stateOf(now) {
-  const { word, tone, light } = judge(now);
+  const { word, tone, light } = /** @type {any} */ (judge(now));
   return { word, tone, light: light ?? { lost: "Lost", check: "Check sensor", wait: "Wait", good: "Good" }[tone] };
 }
 
