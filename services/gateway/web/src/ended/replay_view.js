@@ -290,10 +290,11 @@ export class ReplayView {
     if (!this.player.playing) this.remember();
   }
 
-  /** The address names the moment, so that it can be kept and sent. */
+  /** The address names the moment, so that it can be kept and sent; not any more once somebody is on the way elsewhere. */
   remember() {
-    const address = `${addressOf("session", { session: this.session.id, part: "replay" })}?t=${this.player.at_s.toFixed(2)}`;
-    if (location.hash !== address) history.replaceState(null, "", address);
+    const replay = addressOf("session", { session: this.session.id, part: "replay" });
+    const address = `${replay}?t=${this.player.at_s.toFixed(2)}`;
+    if (location.hash.split("?")[0] === replay && location.hash !== address) history.replaceState(null, "", address);
   }
 
   dispose() {
