@@ -9,12 +9,15 @@ import { number, shown } from "./units.js";
 import { TASKS, metricName } from "./words.js";
 
 const FIRST = 9;
+const REFERENCE = "Grey: reference, from the 5th to the 95th percentile of people like this one.";
+const NO_REFERENCE = "No reference set of this site fits people like this one.";
 const LETTERS = { left: "L", right: "R" };
 
 export class ProgressPanel {
   constructor() {
     this.charts = [];
     this.place = el("div");
+    this.reference = el("p", { class: "quiet" });
     this.node = el(
       "section",
       { class: "panel", "aria-label": "Progress" },
@@ -22,9 +25,10 @@ export class ProgressPanel {
       el(
         "p",
         { class: "quiet" },
-        "Grey: reference, the middle 90 % of people like this one. Dashed: baseline; band: ± MDC, the smallest change beyond measurement error; bars: 95 % interval. Triangle:",
+        "Dashed: baseline; band: ± MDC, the smallest change beyond measurement error; bars: 95 % interval. Triangle:",
         " real change. Dot: within measurement error or cannot tell. Square: baseline. Hollow: not comparable.",
       ),
+      this.reference,
       this.place,
     );
   }
@@ -36,6 +40,7 @@ export class ProgressPanel {
   show(series, treatments, bands) {
     this.dispose();
     this.bands = bands;
+    fill(this.reference, bands.size > 0 ? REFERENCE : NO_REFERENCE);
     this.charts = [];
     const tests = Object.values(Object.groupBy(byMeasure(series), (each) => `${each.task} ${each.instruction}`));
     const nothing = el("p", {}, "No visit has numbers that can be followed yet.");

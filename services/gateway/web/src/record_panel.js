@@ -64,7 +64,7 @@ export class RecordPanel {
       action: "Join",
       reasons: WHY_MERGE,
       fields: [labelled("The code that stays", into)],
-      act: (reason) => post("/patients/{code}/merge", { code: this.code, body: { into: target(), reason } }),
+      act: (reason) => post("/patients/{code}/merge", { code: this.code, body: { into: target(), reason: /** @type {any} */ (reason) } }),
     });
     if (done) location.hash = `#/patients/${target()}`;
   }
@@ -79,7 +79,7 @@ export class RecordPanel {
       fields: [labelled("Type the code once more", typed)],
       act: async (reason) => {
         if (typed.value.trim().toUpperCase() !== this.code) throw new Error(`The code is ${this.code}. Type it to be sure whom you erase.`);
-        await post("/patients/{code}/erasure", { code: this.code, body: { reason } });
+        await post("/patients/{code}/erasure", { code: this.code, body: { reason: /** @type {any} */ (reason) } });
       },
     });
     if (done) location.hash = "#/patients";
