@@ -69,10 +69,11 @@ def losses(description: SessionDescription, records: Iterable[Record], from_ns: 
         if record.stream.signal is IMU:
             sensors = hubs.get(source, [])
             parts = sensor_parts(record.payload, len(sensors))
-            found += [heard.take(now_ns, part) for heard, part in zip(sensors, parts, strict=True)]
+            ended = (heard.take(now_ns, part) for heard, part in zip(sensors, parts, strict=True))
+            found += filter(None, ended)
         elif source in cameras:
             heard, person = cameras[source]
-            found += [heard.take(now_ns, record.payload), person.take(now_ns, record.payload)]
+            found += filter(None, (heard.take(now_ns, record.payload), person.take(now_ns, record.payload)))
     found += [heard.rest(until_ns) for sensors in hubs.values() for heard in sensors]
     found += [each.rest(until_ns) for pair in cameras.values() for each in pair]
     return sorted((loss for loss in found if loss is not None), key=lambda loss: (loss.start_ns, loss.source))

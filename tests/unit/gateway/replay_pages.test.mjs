@@ -103,6 +103,14 @@ test("pictures are had ten seconds at a time, with those that come next, and not
   assert.equal(made.isReady(5), false);
 });
 
+test("whoever drags over an hour asks for a few moments, the last one among them", async () => {
+  const { made, asked } = store([]);
+  for (let at_s = 0; at_s <= 395; at_s += 5) made.need(at_s);
+  for (let turn = 0; turn < 5; turn += 1) await settled();
+  assert.ok(asked.length <= 6, `${asked}`);
+  assert.ok(asked.includes(390));
+});
+
 test("a picture of a moment may lie before a gap", async () => {
   const { made } = store([{ at_s: 8 }, { at_s: 14 }]);
   made.need(9);

@@ -5,6 +5,7 @@ import { get } from "../api.js";
 export const CHUNK_S = 10;
 export const RATE_HZ = 25;
 const BEFORE_S = 8;
+const MOST_ASKED = 3;
 const KEPT = 12;
 const AGAIN_MS = 2000;
 
@@ -14,6 +15,8 @@ export class PoseStore {
   /** @type {Map<number, Pose[] | null>} null while it is asked for */
   chunks = new Map();
   closed = false;
+  asked = 0;
+  wanted_s = 0;
 
   /**
    * @param {string} session @param {number} end_s
@@ -28,10 +31,17 @@ export class PoseStore {
 
   /** Have the pictures at a time, those that curves show before it, and those that come after. @param {number} at_s */
   need(at_s) {
-    const place = placeOf(at_s);
-    this.ask(place);
-    this.ask(placeOf(at_s - BEFORE_S));
-    this.ask(place + 1);
+    this.wanted_s = at_s;
+    this.askOn();
+  }
+
+  /** What is wanted now, a few at a time: whoever drags over an hour does not ask for all of it. */
+  askOn() {
+    const place = placeOf(this.wanted_s);
+    for (const each of [place, placeOf(this.wanted_s - BEFORE_S), place + 1]) {
+      if (this.asked >= MOST_ASKED) return;
+      this.ask(each);
+    }
   }
 
   /** Whether the picture of a time is there. @param {number} at_s */
@@ -63,16 +73,20 @@ export class PoseStore {
   async ask(place) {
     if (place < 0 || place > this.last || this.chunks.has(place) || this.closed) return;
     this.chunks.set(place, null);
+    this.asked += 1;
     const from_s = place * CHUNK_S;
     try {
       const wish = { session: this.session, from_s, to_s: from_s + CHUNK_S, rate_hz: RATE_HZ };
       const { poses } = await get("/sessions/{session}/poses", wish);
+      this.asked -= 1;
       this.keep(place, poses);
+      this.askOn();
     } catch (problem) {
+      this.asked -= 1;
       this.chunks.delete(place);
       if (this.closed) return;
       this.onTrouble(/** @type {Error} */ (problem).message);
-      setTimeout(() => this.ask(place), AGAIN_MS);
+      setTimeout(() => this.askOn(), AGAIN_MS);
     }
   }
 
