@@ -51,7 +51,7 @@ test("trouble comes first, then who began first", () => {
   assert.deepEqual(entries.map(needsLook), [true, false, false, false]);
   assert.equal(countsOf(entries), "4 live, 1 needs a look");
   assert.equal(countsOf([]), "");
-  assert.equal(countsOf(entries.slice(1)), "3 live, all well");
+  assert.equal(countsOf(entries.slice(1)), "3 live, none needs a look");
 });
 
 test("a card goes grey within a second of its last data, and shows ages that do not flicker between messages", () => {

@@ -1,6 +1,6 @@
 // Names beside codes, from the clinic's own directory: only for who may see them, only once asked for, and only until
 // this page is left. A screen that others can see shows codes.
-import { post } from "./api.js";
+import { namesOf } from "./directory.js";
 import { el, say } from "./dom.js";
 
 export class FloorNames {
@@ -36,10 +36,9 @@ export class FloorNames {
     const unknown = codes.filter((code) => code !== null).filter((code) => !this.names.has(code));
     if (!this.shown || unknown.length === 0) return;
     for (const code of unknown) this.names.set(code, null);
-    const asked = /** @type {any} */ (post)("/directory/names", { body: { codes: unknown } });
-    const { items } = await asked.catch(() => ({ items: [] }));
+    const found = await namesOf(unknown).catch(() => /** @type {Map<string, import("./directory.js").Entry>} */ (new Map()));
     if (!this.shown) return;
-    for (const { code, name } of items) this.names.set(code, name);
+    for (const [code, { name }] of found) this.names.set(code, name);
     this.onChange();
   }
 }

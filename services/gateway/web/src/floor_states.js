@@ -40,6 +40,6 @@ export const needsLook = ({ tone }) => tone === "lost" || tone === "check";
 export function countsOf(entries) {
   const troubled = entries.filter(needsLook).length;
   if (entries.length === 0) return "";
-  if (troubled === 0) return `${entries.length} live, all well`;
+  if (troubled === 0) return `${entries.length} live, none needs a look`;
   return `${entries.length} live, ${troubled} ${troubled === 1 ? "needs" : "need"} a look`;
 }
