@@ -2,16 +2,17 @@
 
 import time
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from pathlib import Path
 
+from selenium.common.exceptions import TimeoutException
 from selenium.webdriver import Chrome
 from selenium.webdriver.common.by import By
 from selenium.webdriver.support.ui import WebDriverWait
 
-from services.cli.console import out
+from services.cli.console import err, out
 
-PATIENCE_S = 300
+PATIENCE_S = 120
 WIDTH, HEIGHT = 1366, 768
 LIVE_S = 9.0
 """s that a live page is left alone, so that its curves are full."""
@@ -25,17 +26,16 @@ class Camera:
     page: Chrome
     url: str
     folder: Path
+    missing: list[str] = field(default_factory=list)
+    """Pictures whose page never showed what it is about."""
 
     def take(self, name: str, path: str, ready: Callable[[], bool], height: int = HEIGHT) -> None:
-        """A picture of a page once `ready`. Raises TimeoutException."""
+        """A picture of a page once `ready`; noted as missing when it never is."""
         size = {"width": WIDTH, "height": height, "deviceScaleFactor": 1, "mobile": False}
         self.page.execute_cdp_cmd("Emulation.setDeviceMetricsOverride", size)
         self.page.get("about:blank")
         self.page.get(self.url + path)
-        self.wait(ready, name)
-        time.sleep(LIVE_S if name.startswith("live") else STILL_S)
-        self.wait(ready, f"{name}, still")
-        self.keep(name, self.page.get_screenshot_as_png())
+        self._when(ready, name, LIVE_S if name.startswith("live") else STILL_S)
 
     def keep(self, name: str, picture: bytes) -> None:
         """Write a picture and say so."""
@@ -45,8 +45,17 @@ class Camera:
 
     def again(self, name: str, ready: Callable[[], bool]) -> None:
         """A picture of the page that is open, which something was done to."""
-        self.wait(ready, name)
-        time.sleep(STILL_S)
+        self._when(ready, name, STILL_S)
+
+    def _when(self, ready: Callable[[], bool], name: str, settle_s: float) -> None:
+        try:
+            self.wait(ready, name)
+            time.sleep(settle_s)
+            self.wait(ready, f"{name}, still")
+        except TimeoutException:
+            self.missing.append(name)
+            err.print(f"  no picture of {name}: the page did not show what it is about")
+            return
         self.keep(name, self.page.get_screenshot_as_png())
 
     def press(self, selector: str) -> None:

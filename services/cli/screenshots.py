@@ -6,10 +6,12 @@ import tempfile
 from pathlib import Path
 from typing import Any
 
+from selenium.webdriver.common.by import By
+
 from services.bus.settings import BusSettings
 from services.cli import browser as browsers
 from services.cli import picture_visits
-from services.cli.camera import PATIENCE_S, Camera
+from services.cli.camera import Camera
 from services.cli.console import err
 from services.cli.door import Door
 from services.cli.supervisor import Supervisor
@@ -36,11 +38,12 @@ OTHERS = (
     {"year_of_birth": 1955, "sex": "male", "population": "stroke_subacute", "paretic_side": "right"},
 )
 PAPER_PIXELS_PER_INCH = 92
+VISITS_S = 600
 ONWARD = ".start-step button[type=submit]"
 
 
 def main() -> int:
-    """Exit code; the folder is the first argument, `out/screenshots` without one."""
+    """Exit code, 1 when a picture is missing; the folder is the first argument, `out/screenshots` without one."""
     missing = browsers.absent()
     if missing is not None:
         err.print(f"no pictures: {missing}")
@@ -61,12 +64,12 @@ def main() -> int:
             _take_sessions(camera, door)
             _take_start(camera)
             _take_site(camera, door)
-    return 0
+    return 1 if camera.missing else 0
 
 
 def _take_patient(camera: Camera, door: Door, data: Path) -> None:
     """Somebody who came five times, among others."""
-    patient = picture_visits.visits(door, data, PATIENCE_S)
+    patient = picture_visits.visits(door, data, VISITS_S)
     for facts in OTHERS:
         door.ask("patients", facts)
     last = patient.sessions[-1]
@@ -74,8 +77,12 @@ def _take_patient(camera: Camera, door: Door, data: Path) -> None:
     camera.take("progress", f"/#/patients/{patient.code}", lambda: shown(".verdict", "real change"), height=1110)
     camera.take("patients", "/#/patients", lambda: shown(".chip", "real change"))
     camera.take("report", f"/#/sessions/{last}", lambda: shown(".sheet", "m/s"), height=1240)
-    camera.take("replay", f"/#/sessions/{last}/replay?t=42", lambda: shown(".replay-bar", "/"))
-    camera.take("strides", f"/#/sessions/{last}/strides", lambda: shown("tbody", "m"))
+    camera.take("replay", f"/#/sessions/{last}/replay?t=48", lambda: shown(".replay-now", " of "), height=1060)
+    camera.take(
+        "strides",
+        f"/#/sessions/{last}/strides",
+        lambda: bool(camera.page.find_elements(By.CSS_SELECTOR, "tbody tr:nth-child(5)")),
+    )
     report = Report.model_validate(door.ask(f"sessions/{last}/report?language=en"))
     for number, picture in enumerate(press().pictures(report, PAPER_PIXELS_PER_INCH), start=1):
         camera.keep(f"report_page_{number}", picture)
