@@ -126,6 +126,9 @@ def _move_aside(settings: GatewaySettings, contents: Contents) -> Path:
         databases.clear(settings.database_url, aside)
     if contents.names and not databases.is_empty(settings.directory_url):
         databases.clear(settings.directory_url, aside)
+        if settings.directory_key.exists():
+            # Names without the key that sealed them would be lost.
+            shutil.move(settings.directory_key, aside / settings.directory_key.name)
     for file in contents.of(OWN):
         own = settings.own_dir / PurePosixPath(file.path).name
         if own.exists():
@@ -153,7 +156,6 @@ def _put_names(folder: Path, contents: Contents, settings: GatewaySettings) -> N
         if path.suffix in (".sqlite", ".dump"):
             databases.put_back(folder / file.path, settings.directory_url)
         else:
-            settings.directory_key.unlink(missing_ok=True)
             _copy(folder, file, settings.directory_key, 0o600)
 
 

@@ -21,6 +21,7 @@ from services.recordings.folder import verify as verify_recording
 WARN_DAYS = 14
 MOST_NAMED = 3
 OTHERS = 0o077
+SECRETS = Path("/run/secrets")
 STILL_OPEN = (RecordingState.RECORDING, RecordingState.STOPPED)
 
 
@@ -144,7 +145,9 @@ def examine_keys(settings: GatewaySettings) -> Iterator[Finding]:
 
 
 def private(subject: str, file: Path) -> Finding:
-    """Whether a file is its owner's alone."""
+    """Whether a file is its owner's alone. Secrets of a container are nobody else's, whatever their mode says."""
+    if file.is_relative_to(SECRETS):
+        return Finding(subject, True, f"{file}, a secret of this container")
     if file.stat().st_mode & OTHERS:
         return Finding(subject, False, f"{file} can be read by others; `chmod 600 {file}`")
     return Finding(subject, True, f"{file}, readable by its owner alone")

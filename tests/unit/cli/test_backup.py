@@ -143,6 +143,10 @@ def test_names_only_when_asked(site, tmp_path):
     assert new.directory_key.stat().st_mode & 0o077 == 0
     with closing(sqlite3.connect(new.own_dir / "directory.sqlite")) as names:
         assert names.execute("SELECT count(*) FROM entry").fetchone() == (0,)
+    new.directory_key.write_bytes(b"other")
+    aside = restore(tmp_path / "backup", new, replace=True, tell=silent)
+    assert (aside / "directory.key").read_bytes() == b"other", "names aside can still be opened"
+    assert new.directory_key.read_bytes() == b"k" * 32
 
 
 @pytest.mark.parametrize("harm", ["altered", "missing", "cut"])
