@@ -36,9 +36,9 @@ export class FloorNames {
     const unknown = codes.filter((code) => code !== null).filter((code) => !this.names.has(code));
     if (!this.shown || unknown.length === 0) return;
     for (const code of unknown) this.names.set(code, null);
-    const found = await namesOf(unknown).catch(() => /** @type {Map<string, import("./directory.js").Entry>} */ (new Map()));
+    const found = await namesOf(unknown).catch(() => []);
     if (!this.shown) return;
-    for (const [code, { name }] of found) this.names.set(code, name);
+    for (const { code, name } of found) this.names.set(code, name);
     this.onChange();
   }
 }
