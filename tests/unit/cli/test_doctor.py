@@ -170,9 +170,12 @@ def test_a_port_is_free_or_ours_or_taken(settings, database):
                 while True:
                     listener.accept()[0].close()
 
-        threading.Thread(target=hang_up, daemon=True).start()
+        thread = threading.Thread(target=hang_up, daemon=True)
+        thread.start()
         assert "taken by another program" in stack.page_port(taken).says
         assert "another in AMBULA_ROUTER" in stack.router_port(f"tcp/127.0.0.1:{port}").says
+        listener.shutdown(socket.SHUT_RDWR)
+        thread.join(10.0)
     assert stack.page_port(taken).says == f"{port} is free"
     assert stack.router_port(f"tcp/127.0.0.1:{port}").ok is None
     foreign = settings.model_copy(update={"http_host": "192.0.2.1"})
