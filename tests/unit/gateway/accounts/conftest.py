@@ -1,5 +1,6 @@
 """Several browsers at one gateway, whose passwords cost next to nothing."""
 
+import shutil
 from dataclasses import replace
 from datetime import UTC, datetime, timedelta
 
@@ -15,6 +16,7 @@ from services.gateway.access.tables import AccountRow, SignInRow
 from services.gateway.accounts.passwords import Passwords
 from services.gateway.accounts.records import add_account, find_login
 from services.gateway.audit.tables import AuditRow
+from services.gateway.database import open_database
 from tests.unit.gateway import people
 
 PASSWORD = "three quiet steps"
@@ -96,6 +98,20 @@ class Clinic:
     def audit(self):
         with self.gateway.database.transaction(EVERYTHING) as database:
             return list(database.scalars(select(AuditRow).order_by(AuditRow.number)))
+
+
+@pytest.fixture(scope="session")
+def new_database(tmp_path_factory):
+    """A database as it is at the first start, made once."""
+    path = tmp_path_factory.mktemp("new") / "gateway.sqlite"
+    open_database(f"sqlite:///{path}").close()
+    return path
+
+
+@pytest.fixture
+def settings(settings, new_database, tmp_path):
+    shutil.copy(new_database, tmp_path / "gateway.sqlite")
+    return settings
 
 
 @pytest.fixture

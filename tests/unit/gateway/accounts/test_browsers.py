@@ -93,9 +93,9 @@ def test_tabs_that_renew_at_once_stay_signed_in(clinic):
     assert asks(one) == IN
 
 
-@pytest.mark.parametrize("cookie", ["", ".", "a", "a.b", "no-id.no-secret", "..", "a" * 5000])
-def test_a_cookie_that_is_none_is_nobody(clinic, cookie):
-    assert asks(holding(clinic, cookie)) == OUT
+def test_a_cookie_that_is_none_is_nobody(clinic):
+    for cookie in ("", ".", "a", "a.b", "no-id.no-secret", "..", "a" * 5000):
+        assert asks(holding(clinic, cookie)) == OUT, cookie
 
 
 @pytest.mark.parametrize(("age", "expected"), [("seen", 3601), ("created", 12 * 3600 + 1)])

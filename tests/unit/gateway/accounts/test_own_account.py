@@ -55,9 +55,9 @@ def test_without_the_old_one_there_is_no_new_one_and_guessing_closes_the_account
     assert browser.get("/v1/me").status_code == HTTPStatus.OK
 
 
-@pytest.mark.parametrize("weak", ["short", "aaaaaaaaaaaaaa", "I am m.arnold!!"])
-def test_a_weak_one_is_not_taken(sign_in, weak):
-    assert change(sign_in(), new_password=weak).status_code == HTTPStatus.UNPROCESSABLE_ENTITY
+def test_a_weak_one_is_not_taken(sign_in):
+    for weak in ("short", "aaaaaaaaaaaaaa", "I am m.arnold!!"):
+        assert change(sign_in(), new_password=weak).status_code == HTTPStatus.UNPROCESSABLE_ENTITY, weak
     assert sign_in().status == HTTPStatus.OK
 
 

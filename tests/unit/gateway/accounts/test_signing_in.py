@@ -168,9 +168,9 @@ def test_an_account_that_is_closed_meanwhile_is_not_signed_in_to(clinic):
     assert clinic.sign_ins() == []
 
 
-@pytest.mark.parametrize("text", ["\x00", "\ud800", "a\x1fb"])
-def test_names_and_passwords_that_no_database_takes_are_refused(clinic, text):
-    for login, password in ((text, PASSWORD), ("m.arnold", text)):
+def test_names_and_passwords_that_no_database_takes_are_refused(clinic):
+    odd = ("\x00", "\ud800", "a\x1fb")
+    for login, password in (*((text, PASSWORD) for text in odd), *(("m.arnold", text) for text in odd)):
         body = json.dumps({"login": login, "password": password})
         answer = clinic.browser().post("/v1/sign-in", content=body, headers={"content-type": "application/json"})
         assert answer.status_code in (HTTPStatus.UNPROCESSABLE_ENTITY, HTTPStatus.UNAUTHORIZED)
