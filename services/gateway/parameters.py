@@ -77,7 +77,7 @@ class GatewayParameters:
     """s in which the secret before the last one is still taken: requests that were under way."""
 
     confirmed_s: float = 300.0
-    """s for which a password that was asked for again counts: erasing, merging, exporting the audit."""
+    """s for which a password that was asked for again counts: erasing, merging."""
 
     free_failures: int = 5
     """Number of wrong passwords that cost nothing but their time."""

@@ -47,8 +47,9 @@ def merge_patient(code: PatientCode, body: MergeIn, gateway: Context, request: R
 
     Facts that contradict each other are to be corrected first. Asks for the password once more.
     """
-    note(request, Noted(patients=(code, body.into), object=f"from={code} into={body.into}", reason=body.reason))
+    note(request, Noted(reason=body.reason))
     _check_mergeable(gateway, code, body.into)
+    note(request, Noted(patients=(code, body.into), object=f"from={code} into={body.into}", reason=body.reason))
     _bring_name_along(gateway, code, body.into)
     # Sessions in the bin move, too, and no scope has both.
     with gateway.database.transaction(EVERYTHING) as database:
