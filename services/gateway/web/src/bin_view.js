@@ -39,7 +39,7 @@ class BinView {
       host,
       section("Recycle bin", el("h1", {}, "Recycle bin"), this.about, this.told, this.problem),
       section("Patients", el("h2", {}, "Patients"), this.patients.node),
-      section("Sessions", el("h2", {}, "Sessions deleted by themselves"), this.sessions.node),
+      section("Sessions", el("h2", {}, "Single sessions"), this.sessions.node),
     );
     this.load();
   }

@@ -10,14 +10,15 @@ import { el, tell } from "./dom.js";
  * @param {Node[]} wish.fields
  * @param {string} wish.action word on the button
  * @param {boolean} [wish.danger] whether it takes something away
+ * @param {boolean} [wish.over] whether it has happened already: there is nothing to cancel
  * @param {() => Promise<unknown>} wish.act what the button does; its errors are shown
  * @returns {Promise<boolean>} whether it was done
  */
-export function askForm({ title, about, fields, action, danger = false, act }) {
+export function askForm({ title, about, fields, action, danger = false, over = false, act }) {
   const problem = el("p", { class: "banner", role: "alert", hidden: true });
   const go = el("button", { class: danger ? "danger" : "primary", type: "submit" }, action);
   const dialog = el("dialog", { class: "form-dialog" });
-  const cancel = el("button", { type: "button", onclick: () => dialog.close() }, "Cancel");
+  const cancel = el("button", { type: "button", hidden: over, onclick: () => dialog.close() }, "Cancel");
   const heading = el("h2", { id: "form-dialog-title" }, title);
   let done = false;
 
@@ -53,6 +54,7 @@ export function askForm({ title, about, fields, action, danger = false, act }) {
       dialog.remove();
       resolve(done);
     });
+    dialog.addEventListener("cancel", (event) => over && event.preventDefault());
     // Whoever leaves the page has left the question, too.
     window.addEventListener("hashchange", () => dialog.close(), { once: true });
     document.body.append(dialog);
@@ -66,7 +68,7 @@ export function showOnce({ title, about, text }) {
   const told = el("span", { class: "quiet", role: "status" });
   const copy = el("button", { type: "button", onclick: () => copyText(shown, told) }, "Copy");
   const fields = [el("div", { class: "copied" }, shown, copy), told];
-  return askForm({ title, about, fields, action: "I have kept it", act: async () => {} });
+  return askForm({ title, about, fields, action: "I have kept it", over: true, act: async () => {} });
 }
 
 /** Without a clipboard (plain http on a network) it is selected, to be copied by hand. @param {HTMLElement} shown @param {HTMLElement} told */

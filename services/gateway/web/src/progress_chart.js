@@ -57,7 +57,7 @@ export function spanOf(lines, reference = null) {
   ]);
   const known = [...values, ...(reference ? [reference.low, reference.high] : [])].filter((value) => value !== null);
   const [low, high] = [Math.min(...known), Math.max(...known)];
-  const room = Math.max(0.08 * (high - low), 0.02 * Math.abs(high), 1e-6);
+  const room = Math.max(0.08 * (high - low), 0.02 * Math.abs(high)) || 0.5;
   return [low - room, high + room];
 }
 
