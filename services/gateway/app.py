@@ -2,7 +2,7 @@
 
 import asyncio
 from collections.abc import AsyncIterator, Callable
-from contextlib import asynccontextmanager
+from contextlib import asynccontextmanager, suppress
 from functools import partial
 from importlib.metadata import version
 from typing import Any
@@ -129,6 +129,9 @@ def create_app(settings: GatewaySettings, live: LiveHub, control: Control) -> Fa
         house = asyncio.create_task(keep_house(jobs))
         yield
         house.cancel()
+        # A job that is under way ends before the database is closed.
+        with suppress(asyncio.CancelledError):
+            await house
         await live.stop()
         directory.close()
         database.close()
