@@ -24,10 +24,11 @@ export class ReportView {
       onChoose: () => this.show(),
     });
     this.pdf = el("a", { class: "button", download: true });
+    this.print = el("button", { type: "button", onclick: () => window.print() });
     this.sheet = el("div", { class: "sheet-place", "aria-live": "polite" });
     fill(
       host,
-      el("div", { class: "report-bar" }, this.levels.node, el("span", { class: "spring" }), this.languages.node, this.pdf),
+      el("div", { class: "report-bar" }, this.levels.node, el("span", { class: "spring" }), this.languages.node, this.print, this.pdf),
       this.sheet,
     );
     this.show();
@@ -41,6 +42,7 @@ export class ReportView {
     this.languages.reword(words.languages, LANGUAGES);
     this.pdf.href = linkTo("/sessions/{session}/report.pdf", { session: this.session.id, ...wishOf(language, level) });
     this.pdf.textContent = words.pdf;
+    this.print.textContent = words.print;
     if (!this.sheet.firstChild) fill(this.sheet, el("p", { class: "quiet" }, words.reading));
     const shown = await this.sheetOf(language, level);
     if (!this.disposed && level === this.levels.chosen && language === this.languages.chosen) fill(this.sheet, shown);
