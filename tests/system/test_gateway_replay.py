@@ -10,7 +10,7 @@ from selenium.webdriver.common.keys import Keys
 from selenium.webdriver.support.ui import Select
 
 from services.cli import browser as browsers
-from tests.system import pages
+from tests.system import axe, pages
 from tests.system.pages import begin, colours, keep, part, shown, text, wait
 
 pytestmark = pages.NEEDED
@@ -80,6 +80,7 @@ def test_a_replay_plays_is_scrubbed_and_goes_to_a_stride_and_back(site, page):
     slider.send_keys(Keys.ARROW_UP)
     assert abs(now_s(page) - max(each for each in starts if each < here)) < 0.02, "an arrow up is a stride back"
 
+    assert axe.violations(page) == []
     link = page.find_element(By.LINK_TEXT, "In the table")
     link.click()
     wait(page, lambda: len(page.find_elements(By.CSS_SELECTOR, "tr[aria-current]")) == 1, "its row is shown")
@@ -101,6 +102,7 @@ def test_the_table_of_strides_is_that_of_rest_and_leads_to_their_moments(site, p
     hollow = page.find_elements(By.CSS_SELECTOR, ".strides-panel tr.refused td:last-child")
     assert [cell.text for cell in hollow] == refused
 
+    assert axe.violations(page) == []
     place = len(told) // 2
     rows[place].find_element(By.TAG_NAME, "a").click()
     wait(page, lambda: page.find_elements(By.CSS_SELECTOR, "[role=slider]"), "the replay opens")
@@ -111,5 +113,6 @@ def test_the_table_of_strides_is_that_of_rest_and_leads_to_their_moments(site, p
     part(page, "Versions")
     wait(page, lambda: "shown everywhere" in text(page, ".part"), "which software computed it")
     assert re.search(r"ambula \d", text(page, ".part h2"))
+    assert axe.violations(page) == []
     assert browsers.complaints(page) == []
     assert browsers.hosts_asked(page) == {site.url.removeprefix("http://")}

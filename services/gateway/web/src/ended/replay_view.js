@@ -89,7 +89,7 @@ export class ReplayView {
     this.knee = legs && new KneePanel(legs);
     this.sensors = new SensorPanel();
     this.sensors.node.hidden = this.recorded.sensors.length === 0;
-    this.counted = el("div", { class: "side-column" });
+    this.counted = el("div", { class: "column" });
     this.stripPlace = el("div", { class: "strip-place" });
     const curves = el("div", { class: "curves" }, this.knee?.node, ...this.charts.map(({ node }) => node));
     const side = [this.counted, this.angles?.node, this.camera?.node, this.sensors.node];
@@ -98,7 +98,7 @@ export class ReplayView {
       { class: wholeBody ? "live replay whole-body" : "live replay" },
       this.body.node,
       curves,
-      el("div", { class: "side-column" }, ...side),
+      el("div", { class: "side-column", tabindex: 0, role: "group", "aria-label": "Numbers and sensors" }, ...side),
     );
     fill(this.host, this.trouble, this.bar(), this.timeline.node, this.stripPlace, this.live);
     if (this.camera) this.body.views.append(this.camera.chips);
