@@ -27,6 +27,9 @@ HEARTBEAT_S = 0.5
 PAUSE_S = 0.3
 """Before a question is asked again."""
 
+TIMED_OUT = "Timeout"
+"""What the bus itself says in place of a peer whose answer did not come in time."""
+
 logger = logging.getLogger(__name__)
 
 
@@ -180,7 +183,10 @@ class Bus:
         answers = []
         for reply in replies:
             if reply.err is not None:
-                raise RemoteError(reply.err.payload.to_bytes().decode(errors="replace"))
+                reason = reply.err.payload.to_bytes().decode(errors="replace")
+                if reason == TIMED_OUT:
+                    continue
+                raise RemoteError(reason)
             if reply.ok is not None:
                 answers.append(_received(reply.ok))
         return answers

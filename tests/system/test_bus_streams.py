@@ -11,6 +11,7 @@ import pytest
 
 from schemas.health import Reason
 from schemas.signals import stream_key
+from services.bus.connection import Bus, Received
 from services.bus.queue import BoundedQueue
 from services.bus.router import open_router
 from services.bus.settings import BusSettings
@@ -216,3 +217,20 @@ def test_a_sample_travels_unchanged(settings: BusSettings, closing: Closing):
     (delivery,) = collector.deliveries
     assert delivery.envelope == sent == Envelope(0, 0, 17)
     assert delivery.payload == sample(4).model_dump_json().encode()
+
+
+def test_an_answer_that_comes_too_late_is_none_and_is_asked_for_again(settings: BusSettings, closing: Closing) -> None:
+    asked = threading.Semaphore(0)
+    go_on = threading.Event()
+
+    def slow(key: str, _parameters: dict[str, str], _body: bytes) -> list[Received]:
+        asked.release()
+        go_on.wait(30.0)
+        return [Received(key, b"", b"done")]
+
+    peer, bus = closing(Bus.open(settings, "peer")), closing(Bus.open(settings, "bus"))
+    peer.serve("ambula/test/slow", slow)
+    assert bus.ask("ambula/test/slow", timeout_s=0.3) == []
+    go_on.set()
+    assert asked.acquire(timeout=30.0)
+    assert [each.payload for each in bus.ask_again("ambula/test/slow", b"", 0.3, tries=100)] == [b"done"]
