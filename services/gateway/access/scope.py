@@ -73,9 +73,10 @@ def narrow(state: ORMExecuteState) -> None:
     Raises OutOfScope for a statement to which they can not be added.
     """
     scope: Scope = state.session.info[SCOPE]
-    if scope.clinic is None or state.is_column_load or state.is_relationship_load:
+    if scope.clinic is None or state.is_column_load:
         return
-    check_statement(state, NARROWED)
+    if not state.is_relationship_load:
+        check_statement(state, NARROWED)
     sessions = select(SessionRow.id).where(scope.sessions()).scalar_subquery()
     patients = select(PatientRow.code).where(scope.patients()).scalar_subquery()
     options = [
@@ -88,4 +89,4 @@ def narrow(state: ORMExecuteState) -> None:
 
 
 def _narrowed(table: Any, condition: ColumnElement[bool]) -> Any:
-    return with_loader_criteria(table, condition, include_aliases=True, propagate_to_loaders=False)
+    return with_loader_criteria(table, condition, include_aliases=True)

@@ -34,6 +34,19 @@ class SessionState(StrEnum):
     FAILED = "failed"
 
 
+class ClosedConditions(Conditions):
+    """How a test is done. What is not known here is refused, not left out."""
+
+    model_config = ConfigDict(extra="forbid")
+
+
+def _as_stored(said: Conditions) -> Conditions:
+    return Conditions.model_validate(said.model_dump())
+
+
+ConditionsIn = Annotated[ClosedConditions, AfterValidator(_as_stored)]
+
+
 class SessionIn(BaseModel):
     """Ask for a session."""
 
@@ -66,7 +79,7 @@ class SessionIn(BaseModel):
         description="m from start to turning point of a timed up and go; null for what the source says",
         examples=[3.0],
     )
-    conditions: Conditions | None = Field(
+    conditions: ConditionsIn | None = Field(
         default=None, description="how the test is done; null for what the source and the patient's record say"
     )
     patient: Code | None = Field(default=None, description="patient code; null to link it later")

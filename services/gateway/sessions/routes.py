@@ -7,6 +7,7 @@ from typing import Annotated
 
 from fastapi import APIRouter, Query, Request
 
+from schemas.conditions import Conditions
 from schemas.metrics import SessionMetrics
 from schemas.session import SessionDescription
 from schemas.vocabulary import Task
@@ -53,7 +54,8 @@ def start_session(body: SessionIn, gateway: Context, request: Request) -> Sessio
 
     With a patient, the session knows the rhythms of the patient's previous trial and visit and starts from them.
     """
-    session, known, conditions = records.new_session_id(), None, body.conditions
+    session, known = records.new_session_id(), None
+    conditions: Conditions | None = body.conditions
     note(request, Noted(patients=() if body.patient is None else (body.patient,), session=session))
     clinic = gateway.known_caller.clinic
     with gateway.transaction() as database:

@@ -4,12 +4,13 @@ import secrets
 import shutil
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
-from datetime import UTC, datetime
+from datetime import UTC, datetime, timedelta
 from pathlib import Path
 
 from argon2 import PasswordHasher
 from fastapi import FastAPI
 from fastapi.testclient import TestClient
+from sqlalchemy import select
 
 from schemas.conditions import Conditions
 from schemas.session import SessionDescription
@@ -24,7 +25,7 @@ from services.gateway.access import keys, sign_ins
 from services.gateway.access.identify import COOKIE
 from services.gateway.access.roles import Role
 from services.gateway.access.scope import EVERYTHING
-from services.gateway.access.tables import DeviceRow, ShareRow
+from services.gateway.access.tables import DeviceRow, ShareRow, SignInRow
 from services.gateway.accounts.passwords import Passwords
 from services.gateway.accounts.records import add_account
 from services.gateway.app import create_app
@@ -47,7 +48,10 @@ ROLES = ("viewer", "therapist", "admin", "service")
 CALLERS = ("nobody", *ROLES, "site")
 """`site`: an administrator who may manage every clinic."""
 
-PREPARED = {"PUT /v1/patients/{code}/baseline": {"session": "session"}}
+PREPARED = {
+    "PUT /v1/patients/{code}/baseline": {"session": "session"},
+    "PUT /v1/patients/{code}/name": {"name": "name"},
+}
 """Done for every patient by an administrator of their clinic before anything is tried; bodies by `Target.values`."""
 
 
@@ -110,9 +114,11 @@ class Site:
                 "binned": self._target("binned", "BINNED9", "main", NOW),
             }
             self._rows.flush()
-            for role in ("viewer", "therapist", "admin", "site"):
-                share = ShareRow(patient_code="SHARED9", account_id=self.accounts[role], granted_by=None, granted=NOW)
-                self._rows.add(share)
+            for code in ("SHARED9", "SHARED9B", "SHARED9R"):
+                self._rows.add_all(
+                    ShareRow(patient_code=code, account_id=self.accounts[who], granted_by=None, granted=NOW)
+                    for who in ("viewer", "therapist", "admin", "site")
+                )
 
     def prepare(self, client: TestClient) -> None:
         """Bring about by requests what the database alone does not tell how to make, then remember all of it."""
@@ -128,6 +134,12 @@ class Site:
         self._close()
         shutil.copytree(self._folder, self._kept)
 
+    def forget_confirmations(self) -> None:
+        """Everybody signed in hours ago."""
+        with self._gateway.database.transaction(EVERYTHING) as rows:
+            for row in rows.scalars(select(SignInRow)):
+                row.confirmed -= timedelta(hours=2)
+
     def put_back(self) -> None:
         """Everything on disk as it was."""
         self._close()
@@ -136,6 +148,7 @@ class Site:
 
     def _close(self) -> None:
         self._gateway.database.close()
+        self._gateway.directory.close()
 
     def _add_people(self) -> None:
         self.accounts: dict[str, str] = {}
@@ -164,20 +177,24 @@ class Site:
             id=secrets.token_hex(6), clinic_id=clinic, name=f"Camera {mark}", kind="camera", source=None, note=None,
             retired=None, created=NOW,
         )  # fmt: skip
-        codes = [code, f"{code}B"]
+        codes = [code, f"{code}B", f"{code}R"]
         self._rows.add_all([device, *(self._patient(each, clinic, deleted) for each in codes)])
         self._rows.flush()
         treatment = TreatmentRow(patient_code=code, on=NOW.date(), what="botulinum_toxin")
         share = ShareRow(patient_code=code, account_id=seer.id, granted_by=None, granted=NOW)
         self._rows.add_all([treatment, share])
-        over, running = (self._session(f"{kind}-{name}", code, clinic, deleted) for kind in ("over", "running"))
-        records.record_metrics(self._rows, over.id, metrics_at(60.0, final=True))
+        over = self._session(f"over-{name}", code, clinic, deleted)
+        running = self._session(f"running-{name}", codes[2], clinic, deleted)
+        thrown = self._session(f"thrown-{name}", "K7QM3F", clinic, deleted) if deleted else over
+        for session in {over.id, thrown.id}:
+            records.record_metrics(self._rows, session, metrics_at(60.0, final=True))
         self._record(describe(over.id))
         self._rows.flush()
         values = {
             "code": code, "session": over.id, "running": running.id, "number": treatment.id, "codes": codes,
             "other code": codes[1], "account": staff.id, "seer": seer.id, "guest": guest.id, "login": guest.login,
             "key": key.id, "device": device.id, "clinic": clinic, "password": PASSWORD,
+            "name": f"Erika {name.title()}", "thrown": thrown.id,
         }  # fmt: skip
         return Target(code, clinic, values)
 

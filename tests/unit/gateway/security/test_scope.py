@@ -4,7 +4,7 @@ from datetime import UTC, datetime
 
 import pytest
 from sqlalchemy import delete, exists, func, insert, literal, select, text, union_all, update
-from sqlalchemy.orm import aliased, joinedload, selectinload
+from sqlalchemy.orm import aliased, joinedload, lazyload, selectinload
 
 from services.gateway.access import tables as _  # noqa: F401  every table is known to the metadata
 from services.gateway.access.scope import EVERYTHING, OF_PATIENTS, OF_SESSIONS, Scope
@@ -265,8 +265,15 @@ def test_every_table_about_a_patient_or_a_session_is_narrowed():
             assert mapper.class_ in narrowed or mapper.local_table.name in apart, mapper.local_table.name
 
 
-def test_relationships_lead_only_from_a_session_to_its_own():
-    # They are loaded without narrowing: whoever sees a session sees what hangs on it.
-    for mapper in Base.registry.mappers:
-        for relationship in mapper.relationships:
-            assert (mapper.class_, relationship.mapper.class_ in OF_SESSIONS) == (SessionRow, True), relationship
+def test_what_hangs_on_a_row_is_narrowed_however_it_is_loaded(database):
+    with database.transaction(EVERYTHING) as session:
+        session.get_one(SessionRow, "walk-OURS").patient_code = "BINNED"
+    try:
+        for how in (selectinload, joinedload, lazyload):
+            with database.transaction(OURS) as session:
+                statement = select(SessionRow).where(SessionRow.id == "walk-OURS").options(how(SessionRow.patient))
+                row = session.scalars(statement).unique().one()
+                assert row.patient is None, how
+    finally:
+        with database.transaction(EVERYTHING) as session:
+            session.get_one(SessionRow, "walk-OURS").patient_code = "OURS"
