@@ -133,6 +133,13 @@ def walking_tests(json_path: Path | None = None, *subject: str) -> Scoreboard:
     return run(json_path, *subject)
 
 
+def web(json_path: Path | None = None, *subject: str) -> Scoreboard:
+    """The web application under load: delay from sensor to browser, one who never reads, a flood, the live page."""
+    from services.bench.web.board import run
+
+    return run(json_path, *subject)
+
+
 SCOREBOARDS: dict[str, Callable[..., Scoreboard]] = {
     "accuracy": accuracy,
     "chain": chain,
@@ -151,4 +158,5 @@ SCOREBOARDS: dict[str, Callable[..., Scoreboard]] = {
     "tug": tug,
     "walking_tests": walking_tests,
     "walks": walks,
+    "web": web,
 }

@@ -1,0 +1,1 @@
+"""The gateway under load, and the pages in a browser."""
