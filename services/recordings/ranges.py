@@ -5,6 +5,7 @@ For pages that show a few seconds out of an hour. Whole sessions are read, and c
 
 import io
 from collections.abc import Iterable, Iterator
+from functools import lru_cache
 from itertools import groupby
 from operator import attrgetter
 from pathlib import Path
@@ -127,8 +128,12 @@ def _topics(index: FileIndex, signal: Signal) -> frozenset[str]:
 
 
 def _record(description: SessionDescription, message: RawMessage) -> Record:
-    parsed = parse_topic(message.channel.topic)
-    assert parsed is not None
     channel, at_ns = message.channel, captured_ns(description, message.log_time)
     envelope = Envelope(channel.epoch, message.sequence, at_ns, schema_version=channel.schema_version)
-    return Record(Stream(*parsed), envelope, message.data, message.publish_time)
+    return Record(_stream(channel.topic), envelope, message.data, message.publish_time)
+
+
+@lru_cache(maxsize=256)
+def _stream(topic: str) -> Stream:
+    """Asked for each message, and there are few. Raises KeyError for what `find` never finds."""
+    return Stream.parse(topic)

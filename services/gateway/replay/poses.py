@@ -2,6 +2,7 @@
 
 from bisect import bisect_left
 from collections.abc import Iterator, Sequence
+from itertools import pairwise
 from typing import NamedTuple
 
 from schemas.kinematics import JointCentres, JointState, LivePose
@@ -117,6 +118,9 @@ def _before_an_estimate(
     ranges: RecordedRanges, wanted: Wanted, estimated_ns: Sequence[int], statuses: Statuses
 ) -> list[LivePose]:
     """Where no joint state is near: what the camera saw, or who spoke."""
+    covered_ns = [wanted.from_ns, *estimated_ns, min(wanted.to_ns, ranges.end_ns)]
+    if all(later - earlier < NEAR_NS for earlier, later in pairwise(covered_ns)):
+        return []
     camera = next(iter(ranges.description.cameras), None)
     raw = ranges.find(IMU if camera is None else SKELETON, wanted.from_ns, wanted.to_ns)
     alone = [each for each in due(raw, wanted.rate_hz) if not _is_near(each.captured_ns, estimated_ns)]
