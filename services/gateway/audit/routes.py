@@ -23,9 +23,11 @@ router = APIRouter(prefix="/v1/audit", tags=["audit"], dependencies=[needs(Permi
 DAY = "2026-11-22"
 From = Annotated[date | None, Query(alias="from", description="UTC day of the earliest", examples=[DAY])]
 To = Annotated[date | None, Query(alias="to", description="UTC day of the latest", examples=[DAY])]
-Actor = Annotated[str | None, Query(max_length=32, description="id of an account or key")]
-PatientOf = Annotated[str | None, Query(max_length=16, description="patient code")]
-Action = Annotated[str | None, Query(max_length=64, description="name of an operation", examples=["read_patient"])]
+Actor = Annotated[str | None, Query(pattern="^[A-Za-z0-9_-]{1,32}$", description="id of an account or key")]
+PatientOf = Annotated[str | None, Query(pattern="^[0-9A-Z]{1,16}$", description="patient code")]
+Action = Annotated[
+    str | None, Query(pattern="^[a-z0-9_]{1,64}$", description="name of an operation", examples=["read_patient"])
+]
 
 Format = Annotated[ExportFormat, Query(alias="format", description="fhir: a Bundle of AuditEvents")]
 

@@ -5,7 +5,7 @@ Whatever stops it in between, the list is what it is gone on with: at the next s
 
 import logging
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from datetime import datetime
 from pathlib import Path
 
@@ -20,7 +20,7 @@ from services.gateway.directory.cipher import DirectoryUnusable
 from services.gateway.directory.store import NameDirectory
 from services.gateway.erasure.rows import come_back, erase_rows
 from services.gateway.erasure.tombstones import Tombstone, Tombstones, digest_of
-from services.gateway.exports.sending import stop_sending
+from services.gateway.exports.sending import Outgoing
 from services.gateway.live.hub import LiveHub
 from services.gateway.sessions.keeper import SessionKeeper
 
@@ -41,6 +41,7 @@ class Eraser:
     keeper: SessionKeeper
     live: LiveHub
     control: Control
+    outgoing: Outgoing = field(default_factory=Outgoing)
 
     def erase(self, patient: str | None, sessions: Sequence[str], by: str, reason: str, now: datetime) -> int:
         """Erase a patient with their sessions, or sessions alone; number of recordings that are still to be removed.
@@ -101,7 +102,7 @@ class Eraser:
         for session in sessions:
             self.keeper.forget(session)
             self.live.forget(session)
-        stop_sending(sessions)
+        self.outgoing.stop(sessions)
         self._remove_names(places)
         self._scrub()
 

@@ -67,7 +67,9 @@ def download_export(
         "content-disposition": f'attachment; filename="{file_name(session, name)}"',
         "content-length": str(os.fstat(file.fileno()).st_size),
     }
-    return StreamingResponse(blocks(file, session), media_type=FORMATS[name].media_type, headers=headers)
+    return StreamingResponse(
+        blocks(file, session, gateway.eraser.outgoing), media_type=FORMATS[name].media_type, headers=headers
+    )
 
 
 def _reason(of: Recorded, name: str) -> str | None:

@@ -10,7 +10,7 @@ from services.exports.errors import ExportError
 from services.exports.formats import Options, write
 from services.exports.recorded import RecordedSession
 from services.gateway.exports.recording import Recorded
-from services.gateway.exports.sending import check_there
+from services.gateway.exports.sending import Outgoing
 from services.gateway.problems import Problem
 from services.recordings.errors import ArchiveError
 
@@ -66,9 +66,9 @@ def _problem(error: BaseException) -> Problem | None:
     return None
 
 
-def blocks(file: IO[bytes], session: str) -> Iterator[bytes]:
+def blocks(file: IO[bytes], session: str, outgoing: Outgoing) -> Iterator[bytes]:
     """The file in parts; closed at the end, or when nobody wants more. Raises Erased when the session is meanwhile."""
     with file:
         while block := file.read(_BLOCK):
-            check_there(session)
+            outgoing.check(session)
             yield block

@@ -84,7 +84,7 @@ def export_patient(code: PatientCode, gateway: Context, request: Request) -> Str
     for session, has_numbers in over:
         parts += _of_session(gateway, session, site, has_numbers=has_numbers)
     headers = {"content-disposition": f'attachment; filename="ambula-{code}.zip"'}
-    return StreamingResponse(zipped(parts), media_type="application/zip", headers=headers)
+    return StreamingResponse(zipped(parts, gateway.eraser.outgoing), media_type="application/zip", headers=headers)
 
 
 def _of_session(gateway: Gateway, session: str, site: str, *, has_numbers: bool) -> list[Part]:

@@ -7,7 +7,7 @@ from collections.abc import Callable, Iterator, Sequence
 from pathlib import Path
 from typing import Any
 
-from services.gateway.exports.sending import check_there
+from services.gateway.exports.sending import Outgoing
 
 BLOCK = 1 << 18
 
@@ -35,7 +35,7 @@ Part = tuple[str, str | None, Path | Callable[[], Iterator[bytes]]]
 """Name in the archive, session that it is of, and what is in it."""
 
 
-def zipped(parts: Sequence[Part]) -> Iterator[bytes]:
+def zipped(parts: Sequence[Part], outgoing: Outgoing) -> Iterator[bytes]:
     """A zip file. Recordings are compressed already, so nothing is compressed again.
 
     Raises Erased as soon as a session in it is erased: the connection then ends before the file does.
@@ -46,7 +46,7 @@ def zipped(parts: Sequence[Part]) -> Iterator[bytes]:
             with archive.open(zipfile.ZipInfo(name), "w", force_zip64=True) as entry:
                 for block in _blocks(content):
                     if session is not None:
-                        check_there(session)
+                        outgoing.check(session)
                     entry.write(block)
                     yield outlet.take()
     yield outlet.take()

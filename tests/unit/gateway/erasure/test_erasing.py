@@ -196,11 +196,11 @@ def test_what_still_comes_of_an_erased_session_is_not_kept(client, gateway, made
     assert not gateway.live.is_live("a")
 
 
-def test_a_file_on_its_way_ends(client, patient, walk, tmp_path):
-    walk("sent")
+def test_a_file_on_its_way_ends(client, gateway, patient, walk, tmp_path):
+    walk("a")
     file = tmp_path / "export"
     file.write_bytes(b"x" * 1_000_000)
-    sending = blocks(file.open("rb"), "sent")
+    sending = blocks(file.open("rb"), "a", gateway.eraser.outgoing)
     assert next(sending)
     client.post(f"/v1/patients/{patient}/erasure", json=REASON)
     with pytest.raises(Erased):

@@ -12,7 +12,7 @@ from services.gateway.access.roles import Role
 from services.gateway.access.scope import EVERYTHING
 from services.gateway.access.tables import ShareRow, SignInRow
 from services.gateway.audit import records as audit
-from services.gateway.exports.sending import Erased, stop_sending
+from services.gateway.exports.sending import Erased, Outgoing
 from services.gateway.patients.taking_away import as_json, zipped
 from services.gateway.tables import BaselineRow, PatientRow
 from tests.unit.gateway import people
@@ -161,8 +161,9 @@ def test_only_who_works_with_the_patient_takes_it_away(client, register):
 
 
 def test_an_archive_of_what_is_erased_meanwhile_ends():
-    sending = zipped([("one", None, as_json(1)), ("two", "erased-meanwhile", as_json(2))])
+    outgoing = Outgoing()
+    sending = zipped([("one", None, as_json(1)), ("two", "a", as_json(2))], outgoing)
     assert next(sending)
-    stop_sending(["erased-meanwhile"])
+    outgoing.stop(["a"])
     with pytest.raises(Erased):
         list(sending)
