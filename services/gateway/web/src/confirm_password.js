@@ -4,6 +4,7 @@ import { get, post } from "./api.js";
 import { el } from "./dom.js";
 import { askForm } from "./form_dialog.js";
 import { choice, labelled, passwordInput } from "./form_fields.js";
+import { rememberPlace } from "./identity.js";
 
 /**
  * Ask for the password, and a reason where one is wanted; then do it.
@@ -40,5 +41,5 @@ export async function confirmPassword({ title, about, action, reasons = [], fiel
 /** Who signs in with the organisation's service confirms there. @param {string} provider */
 function elsewhere(provider) {
   const href = `/v1/sign-in/oidc/${encodeURIComponent(provider)}?again=true`;
-  return el("p", {}, "First ", el("a", { href }, `sign in with ${provider} again`), ", then do this within five minutes.");
+  return el("p", {}, "First ", el("a", { href, onclick: rememberPlace }, `sign in with ${provider} again`), ", then do this within five minutes.");
 }

@@ -12,6 +12,14 @@ const CAME_BACK = {
   unavailable: "The service does not answer. Try again in a minute.",
 };
 
+/** Why the organisation's service did not let somebody in, as the gateway says it in the address. @type {Record<string, string>} */
+const PROBLEMS = {
+  expired: "Signing in took too long, or was begun in another window. Try again.",
+  refused: "The sign-in service of your organisation did not let you in. Try again, or ask whoever runs it.",
+  no_account: "You have no account here yet. Ask an administrator of your clinic to make one.",
+  unavailable: "The sign-in service of your organisation does not answer. Try again in a few minutes.",
+};
+
 /** @param {import("./pages.js").Place} place */
 export const open = (place) => new SignInView(place);
 
@@ -43,6 +51,8 @@ class SignInView {
       ),
     );
     tell(this.problem, CAME_BACK[new URLSearchParams(location.hash.split("?")[1]).get("problem") ?? ""] ?? "");
+    const [, code = ""] = /[?&]problem=(\w+)/.exec(location.hash) ?? [];
+    tell(this.problem, Object.hasOwn(PROBLEMS, code) ? PROBLEMS[code] : "");
     this.login.focus();
     this.load();
   }
