@@ -11,7 +11,7 @@ export PYTHONDONTWRITEBYTECODE :=
 export OMP_NUM_THREADS ?= 1
 export OPENBLAS_NUM_THREADS ?= 1
 
-.PHONY: help install web demo test check schemas lock screenshots clean
+.PHONY: help install web demo test check fuzz-api schemas lock screenshots clean
 
 help: ## this list
 	@grep -hE '^[a-z-]+:.*## ' $(MAKEFILE_LIST) | sed -E 's/:.*## /\t/' | expand -t 14
@@ -53,6 +53,9 @@ bench-%: install ## a scoreboard
 
 schemas: install ## write schemas/published from the models
 	$(BIN)/python -m services.cli.publish_schemas
+
+fuzz-api: install ## 20 made-up requests to every operation of the API, as an administrator
+	AMBULA_FUZZ_EXAMPLES=20 $(BIN)/python -m pytest -q tests/unit/gateway/security/test_fuzz.py
 
 screenshots: install ## the pictures of the README
 	$(BIN)/python -m services.cli.screenshots services/gateway/pictures

@@ -67,6 +67,7 @@ def open_site(patients: int) -> Iterator[Site]:
             with Bus.open(stack.settings, "bench") as bus:
                 bus.subscribe(stream_key(settings.site, "*", IMU, "*"), origins.take)
                 sessions = [_begin(door, number) for number in range(patients)]
+                _wait_until_live(door, origins, patients)
                 yield Site(door, sessions, origins, stack.pid("gateway"))
 
 
@@ -74,6 +75,14 @@ def _begin(door: Door, number: int) -> str:
     source = WALK.format(speed=0.8 + 0.03 * number, seed=number + 1)
     patient = door.ask("patients", {})["code"]
     return str(door.ask("sessions", {"source": source, "speed": 1.0, "patient": patient})["id"])
+
+
+def _wait_until_live(door: Door, origins: Origins, patients: int) -> None:
+    end_s = time.monotonic() + READY_S
+    while len(origins.s) < patients or int(door.ask("sessions?state=live&limit=1")["total"]) < patients:
+        if time.monotonic() > end_s:
+            raise TimeoutError(f"not all of {patients} sessions run")
+        time.sleep(0.2)
 
 
 def _free_port() -> int:

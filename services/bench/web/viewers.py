@@ -7,9 +7,10 @@ import socket
 import time
 from dataclasses import dataclass, field
 
-from websockets.asyncio.client import connect
+from websockets.asyncio.client import ClientConnection, connect
+from websockets.exceptions import ConnectionClosed
 
-from services.bench.web.site import Site
+from services.bench.web.site import Origins, Site
 
 OPEN_S = 30.0
 
@@ -43,21 +44,28 @@ async def _watch(site: Site, clients: int, seconds: float, *, stalled: bool) -> 
 
 
 async def _client(site: Site, session: str, until_s: float, seen: Seen) -> None:
+    try:
+        async with asyncio.timeout(until_s - time.monotonic()), _connected(site, session) as live:
+            await _read(live, site.origins, session, seen)
+    except TimeoutError:
+        return
+    except ConnectionClosed:
+        pass
+    seen.closed += 1
+
+
+async def _read(live: ClientConnection, origins: Origins, session: str, seen: Seen) -> None:
     before_s = None
-    async with _connected(site, session) as live:
-        with contextlib.suppress(TimeoutError):
-            async with asyncio.timeout_at(asyncio.get_running_loop().time() + until_s - time.monotonic()):
-                async for text in live:
-                    now_s = time.monotonic()
-                    message = json.loads(text)
-                    if message["kind"] != "pose":
-                        continue
-                    if session in site.origins.s and message["phase"] == "estimating":
-                        seen.latency_s.append(now_s - site.origins.s[session] - message["at_s"])
-                    if before_s is not None:
-                        seen.gap_s.append(now_s - before_s)
-                    before_s = now_s
-                seen.closed += 1
+    async for text in live:
+        now_s = time.monotonic()
+        message = json.loads(text)
+        if message["kind"] != "pose":
+            continue
+        if message["phase"] == "estimating":
+            seen.latency_s.append(now_s - origins.s[session] - message["at_s"])
+        if before_s is not None:
+            seen.gap_s.append(now_s - before_s)
+        before_s = now_s
 
 
 def _connected(site: Site, session: str, sock: socket.socket | None = None) -> connect:
