@@ -6,6 +6,7 @@ import { Happenings } from "../../../services/gateway/web/src/ended/happenings.j
 import { joined, nothingYet } from "../../../services/gateway/web/src/ended/history.js";
 import { Player } from "../../../services/gateway/web/src/ended/player.js";
 import { PoseStore, countUntil } from "../../../services/gateway/web/src/ended/pose_store.js";
+import { strideAt, strideWords } from "../../../services/gateway/web/src/ended/stride_place.js";
 import { lanesOf } from "../../../services/gateway/web/src/ended/timeline.js";
 
 /** Animation frames by hand: `run(ms)` lets that much time pass, sixty frames a second. */
@@ -137,6 +138,16 @@ test("what happened is told once in its order, and anew after a jump back", () =
 test("how many lie at or before a time", () => {
   const sorted = [1, 2, 2, 5].map((at_s) => ({ at_s }));
   assert.deepEqual([0, 1, 2, 4.9, 5, 9].map((at_s) => countUntil(sorted, at_s)), [0, 1, 3, 3, 4, 4]);
+});
+
+test("a moment is in the stride that ends first, and in none between two", () => {
+  const stride = (side, start_s, end_s, valid = true) => ({ side, index: 4, start_s, end_s, valid, rejected_because: "turn" });
+  const strides = [stride("left", 1, 2.1), stride("right", 1.5, 2.6), stride("left", 4, 5, false)];
+  const ends = strides.map(({ end_s }) => ({ at_s: end_s }));
+  const places = [0.5, 1, 1.6, 2.2, 3, 4.5, 6].map((at_s) => strideAt(strides, ends, at_s));
+  assert.deepEqual(places, [null, 0, 0, 1, null, 2, null]);
+  assert.equal(strideWords(strides[1]), "Right stride 5");
+  assert.equal(strideWords(strides[2]), "Left stride 5, does not count: turn");
 });
 
 test("a loss that goes on over the end of a page is one loss", () => {

@@ -18,12 +18,15 @@ import { Happenings } from "./happenings.js";
 import { nothingYet, readPast } from "./history.js";
 import { Player, SPEEDS } from "./player.js";
 import { PoseStore, RATE_HZ, countUntil } from "./pose_store.js";
+import { strideAt, strideWords } from "./stride_place.js";
 import { Timeline } from "./timeline.js";
 
 const CURVES_S = 8;
 /** s; strides that ended longer ago tell nothing of now. */
 const RECENT_S = 40;
 const REMEMBER_MS = 500;
+const EXPORT = "/sessions/{session}/exports/{name}";
+const ANGLES = "joint_angles.csv";
 
 export class ReplayView {
   /** @param {HTMLElement} host @param {any} session @param {URLSearchParams} query `t`: where to begin, s */
@@ -138,12 +141,8 @@ export class ReplayView {
       this.inTable,
       this.state,
       el("span", { class: "spring" }),
-      el("a", { class: "button", download: true, href: this.exportOf("joint_angles.csv") }, "Angles (CSV)"),
+      el("a", { class: "button", download: true, href: linkTo(EXPORT, { session: this.session.id, name: ANGLES }) }, "Angles (CSV)"),
     );
-  }
-
-  exportOf(name) {
-    return linkTo("/sessions/{session}/exports/{name}", { session: this.session.id, name });
   }
 
   /** What counts and sums up, from nothing: after a jump back it is told anew. */
@@ -249,14 +248,10 @@ export class ReplayView {
 
   /** Which stride one is in, in words, with its row in the table. */
   showStride(at_s) {
-    const { strides } = this.past;
-    const first = strides.length > 0 ? countUntil(this.ends, at_s) : 0;
-    const place = strides.findIndex(({ start_s }, index) => index >= first && start_s <= at_s + 1e-6);
-    const stride = place < first || place > first + 3 ? null : strides[place];
-    this.inTable.hidden = !stride;
-    if (!stride) return say(this.here, "");
-    const why = stride.valid ? "" : `, does not count: ${stride.rejected_because ?? "not known"}`;
-    say(this.here, `${stride.side === "left" ? "Left" : "Right"} stride ${stride.index + 1}${why}`);
+    const place = strideAt(this.past.strides, this.ends ?? [], at_s);
+    this.inTable.hidden = place === null;
+    if (place === null) return say(this.here, "");
+    say(this.here, strideWords(this.past.strides[place]));
     this.inTable.href = `${addressOf("session", { session: this.session.id, part: "strides" })}?row=${place}`;
   }
 
