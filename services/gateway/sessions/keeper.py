@@ -108,8 +108,8 @@ class SessionKeeper:
     def _record_start(self, description: SessionDescription) -> None:
         with self.database.transaction(EVERYTHING) as database:
             row = records.record_start(database, description, self.clinic)
-            patient, clinic = row.patient_code, row.clinic_id
-        self.live.assign(description.session, patient, clinic)
+            # Told before the row is let go: whoever links it to a patient meanwhile is heard after this, not before.
+            self.live.assign(description.session, row.patient_code, row.clinic_id)
 
     def _record_metrics(self, session: str, metrics: SessionMetrics) -> None:
         with self.database.transaction(EVERYTHING) as database:
