@@ -24,7 +24,9 @@ def test_every_style_is_in_the_one_list():
 
 
 @pytest.mark.skipif(shutil.which("node") is None, reason="node is not installed")
-@pytest.mark.parametrize("name", ["page", "live_pages", "whole_body", "walking_tests", "progress", "replay_pages", "page_table"])
+@pytest.mark.parametrize(
+    "name", ["page", "live_pages", "whole_body", "walking_tests", "progress", "replay_pages", "page_table"]
+)
 def test_page_modules(name):
     done = subprocess.run(
         ["node", "--test", str(HERE / f"{name}.test.mjs")], capture_output=True, text=True, timeout=120, check=False

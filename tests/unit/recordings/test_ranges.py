@@ -1,4 +1,4 @@
-"""A few seconds out of a session, found by the index: the messages that reading everything gives, and no others read."""
+"""A few seconds of a session, found by the index: the messages that reading everything gives, and no others read."""
 
 import pytest
 
