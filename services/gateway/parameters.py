@@ -7,8 +7,9 @@ from dataclasses import dataclass
 class GatewayParameters:
     """Defaults from the design's section 8 and the measured fan-out behind it."""
 
-    pose_interval_s: float = 0.05
-    """s between two skeletons on a screen: 20 Hz, enough for the eye and cheap to encode once per session."""
+    pose_interval_s: float = 0.03
+    """s between two skeletons on a screen at least. They come 25 times a second and are passed on at once; only where
+    they come in heaps does this hold some back, whose angles come with the next."""
 
     trail: int = 32
     """Number of skeletons kept per session, so that curves miss none between two that are shown."""

@@ -26,7 +26,7 @@ NOTE = (
     "Latency: from the capture of a skeleton's newest sample to its receipt at a client, on this machine's monotonic"
     " clock. A synthetic sample is captured when its time has come; time zero of a session is the earliest"
     " (arrival - sample time) of its sensors' messages on the bus. It holds batching by the hub, the estimator and the"
-    " 50 ms between two skeletons on a screen. A gap is the time between two skeletons at one client."
+    " 40 ms between two skeletons. A gap is the time between two skeletons at one client."
 )
 
 

@@ -4,10 +4,13 @@ import http.client
 import multiprocessing
 import time
 from collections import Counter
+from concurrent.futures import ThreadPoolExecutor
 
 from services.bench.web.site import Site
 
 PROCESSES = 2
+CONNECTIONS = 8
+"""Of each process: one after the other waits for an answer before it asks again."""
 
 
 def flood(site: Site, per_s: float, seconds: float) -> Counter[int]:
@@ -15,9 +18,15 @@ def flood(site: Site, per_s: float, seconds: float) -> Counter[int]:
     context = multiprocessing.get_context("spawn")
     address = site.door.url.removeprefix("http://")
     cookie = "=".join(site.door.cookie)
-    share = (address, cookie, per_s / PROCESSES, seconds)
+    share = (address, cookie, per_s / PROCESSES / CONNECTIONS, seconds)
     with context.Pool(PROCESSES) as pool:
-        return sum((Counter(each) for each in pool.starmap(_ask, [share] * PROCESSES)), Counter())
+        return sum((Counter(each) for each in pool.starmap(_ask_by_many, [share] * PROCESSES)), Counter())
+
+
+def _ask_by_many(address: str, cookie: str, per_s: float, seconds: float) -> dict[int, int]:
+    with ThreadPoolExecutor(CONNECTIONS) as threads:
+        asked = [threads.submit(_ask, address, cookie, per_s, seconds) for _ in range(CONNECTIONS)]
+        return dict(sum((Counter(each.result()) for each in asked), Counter()))
 
 
 def _ask(address: str, cookie: str, per_s: float, seconds: float) -> dict[int, int]:

@@ -7,7 +7,6 @@ import math
 import time
 from collections import deque
 from collections.abc import Callable, Iterator
-from dataclasses import dataclass, field
 
 from schemas.kinematics import LivePose
 from schemas.quality import DataQuality
@@ -17,18 +16,13 @@ from services.gateway.access.scope import Scope
 from services.gateway.health.board import HealthBoard
 from services.gateway.live import views
 from services.gateway.live.audience import Audience
-from services.gateway.live.memory import Memory
+from services.gateway.live.cards import card_view
+from services.gateway.live.session import ArrivedPose, LiveSession
 from services.gateway.live.viewer import GOING_AWAY, NORMAL, POLICY, Viewer
 from services.gateway.live.views import View
 from services.gateway.parameters import GatewayParameters
 
 log = logging.getLogger(__name__)
-
-_CARD_HEAD = ("id", "title", "patient", "task", "estimator", "started_unix_s", "duration_s")
-_PERIODS = 2
-"""Between words on the quality of the data, 5 s each: what is told of a sensor is of the last ten seconds."""
-_CARD_PHASES = 5
-"""As many as a timed up and go has; of a six-minute walk no card shows more."""
 
 
 class NotLive(LookupError):
@@ -37,27 +31,6 @@ class NotLive(LookupError):
 
 class TooManyViewers(RuntimeError):
     """The bound on open live connections is reached."""
-
-
-@dataclass(slots=True, eq=False)
-class ArrivedPose:
-    """A skeleton as it came, and when."""
-
-    payload: bytes
-    received_s: float
-
-
-@dataclass(eq=False)
-class LiveSession:
-    """One running session and who watches it. Until its clinic is known nobody but the site itself sees it."""
-
-    description: SessionDescription
-    patient: str | None = None
-    clinic: str | None = None
-    memory: Memory = field(default_factory=Memory)
-    viewers: set[Viewer] = field(default_factory=set)
-    task: asyncio.Task[None] | None = None
-    qualities: deque[DataQuality] = field(default_factory=lambda: deque(maxlen=_PERIODS))
 
 
 class LiveHub:
@@ -73,17 +46,19 @@ class LiveHub:
         self.undecodable = 0
         self._loop: asyncio.AbstractEventLoop | None = None
         self._sessions: dict[str, LiveSession] = {}
-        self._poses: dict[str, deque[ArrivedPose]] = {}
         self._floor_viewers: set[Viewer] = set()
         self._floor_task: asyncio.Task[None] | None = None
 
     # Fed by the bus, from any thread.
 
     def pose(self, session: str, payload: bytes) -> None:
-        """The newest skeleton of a session. Decoded only when somebody looks."""
-        arrived = self._poses.get(session)
-        if arrived is not None:
-            arrived.append(ArrivedPose(payload, self.clock()))
+        """The newest skeleton of a session. Decoded only when somebody looks, and shown at once then."""
+        live = self._sessions.get(session)
+        if live is None:
+            return
+        live.poses.append(ArrivedPose(payload, self.clock()))
+        if live.task is not None:
+            self._on_loop(live.arrival.set)
 
     def open(self, description: SessionDescription) -> None:
         """A session runs. Known ones are left as they are."""
@@ -137,7 +112,7 @@ class LiveHub:
         for view in (views.session_view(live.description, live.patient), *live.memory):
             viewer.tell(views.encode(view))
         if live.task is None:
-            live.task = asyncio.get_running_loop().create_task(self._show_poses(session, live))
+            live.task = asyncio.get_running_loop().create_task(self._show_poses(live))
         try:
             yield viewer
         finally:
@@ -183,8 +158,8 @@ class LiveHub:
             self._loop.call_soon_threadsafe(call)
 
     def _open(self, description: SessionDescription) -> None:
-        self._sessions.setdefault(description.session, LiveSession(description))
-        self._poses.setdefault(description.session, deque(maxlen=self.parameters.trail))
+        live = LiveSession(description, poses=deque(maxlen=self.parameters.trail))
+        self._sessions.setdefault(description.session, live)
 
     def _assign(self, session: str, patient: str | None, clinic: str) -> None:
         live = self._sessions.get(session)
@@ -224,19 +199,20 @@ class LiveHub:
         if live.task is not None:
             live.task.cancel()
             live.task = None
-        del self._sessions[session], self._poses[session]
+        del self._sessions[session]
 
-    async def _show_poses(self, session: str, live: LiveSession) -> None:
+    async def _show_poses(self, live: LiveSession) -> None:
         shown_s = beat_s = -math.inf
         while True:
-            fresh = [each for each in self._poses[session].copy() if each.received_s > shown_s]
+            fresh = [each for each in live.poses.copy() if each.received_s > shown_s]
             if fresh:
                 shown_s = fresh[-1].received_s
-                self._show(live.viewers, "pose", self._pose_view(session, fresh))
+                self._show(live.viewers, "pose", self._pose_view(live, fresh))
             if self.clock() - beat_s >= self.parameters.heartbeat_s:
                 beat_s = self.clock()
-                self._show(live.viewers, "status", self._status_view(session))
+                self._show(live.viewers, "status", self._status_view(live))
             await asyncio.sleep(self.parameters.pose_interval_s)
+            await live.until_arrival(self.parameters.heartbeat_s)
 
     async def _show_floor(self) -> None:
         while True:
@@ -249,56 +225,33 @@ class LiveHub:
             for viewer in viewers:
                 viewer.show(slot, text)
 
-    def _decode(self, session: str, arrived: ArrivedPose) -> LivePose | None:
+    def _decode(self, live: LiveSession, arrived: ArrivedPose) -> LivePose | None:
         try:
             return LivePose.model_validate_json(arrived.payload)
         except ValueError:
             self.undecodable += 1
-            log.warning(event("undecodable_pose", session=session, count=self.undecodable))
+            log.warning(event("undecodable_pose", session=live.description.session, count=self.undecodable))
             return None
 
-    def _pose_view(self, session: str, fresh: list[ArrivedPose]) -> View | None:
-        poses = [pose for each in fresh if (pose := self._decode(session, each)) is not None]
+    def _pose_view(self, live: LiveSession, fresh: list[ArrivedPose]) -> View | None:
+        poses = [pose for each in fresh if (pose := self._decode(live, each)) is not None]
         return views.pose_view(poses, self.clock() - fresh[-1].received_s) if poses else None
 
-    def _newest(self, session: str) -> ArrivedPose | None:
-        arrived = self._poses.get(session)
-        return arrived[-1] if arrived else None
-
-    def _age_s(self, session: str) -> float | None:
-        newest = self._newest(session)
-        return None if newest is None else round(self.clock() - newest.received_s, 2)
-
-    def _status_view(self, session: str) -> View:
-        stopped = self.health.recording_stopped(session)
-        return {"kind": "status", "age_s": self._age_s(session), "recording_stopped": stopped, **self.health.brief()}
+    def _status_view(self, live: LiveSession) -> View:
+        stopped = self.health.recording_stopped(live.description.session)
+        age_s = live.age_s(self.clock())
+        return {"kind": "status", "age_s": age_s, "recording_stopped": stopped, **self.health.brief()}
 
     def _show_cards(self, viewers: set[Viewer]) -> None:
         """Each card is made once, and each list once for all who may see the same."""
-        cards = [(live, self._card_view(session, live)) for session, live in self._sessions.items()]
+        cards = [(live, self._card_view(live)) for live in self._sessions.values()]
         brief = self.health.brief()
         for scope in {viewer.scope for viewer in viewers}:
             seen = [card for live, card in cards if scope.sees(live.clinic, live.patient)]
             alike = {viewer for viewer in viewers if viewer.scope == scope}
             self._show(alike, "floor", {"kind": "floor", "sessions": seen, **brief})
 
-    def _card_view(self, session: str, live: LiveSession) -> View:
-        newest = self._newest(session)
-        pose = None if newest is None else self._decode(session, newest)
-        head = views.session_view(live.description, live.patient)
-        return {
-            **{name: head[name] for name in _CARD_HEAD},
-            "sensor_segments": {sensor["name"]: sensor["segment"] for sensor in head["sensors"]},
-            "age_s": self._age_s(session),
-            "elapsed_s": None if pose is None else views.seconds(pose.captured_ns),
-            "phase": None if pose is None else pose.phase,
-            "message": None if pose is None else pose.message,
-            "sensors": [] if pose is None else views.sensor_views(pose),
-            "cameras": [] if pose is None else views.camera_views(pose),
-            "cadence_per_min": None if pose is None else pose.cadence_per_min,
-            "strides": sum(view["index"] + 1 for view in live.memory.of("stride")),
-            "repetitions": sum(view["index"] + 1 for view in live.memory.of("repetition")),
-            "task_phases": live.memory.newest_phases(_CARD_PHASES),
-            "recording_stopped": self.health.recording_stopped(session),
-            "misplaced": next((view["misplaced"] for view in live.memory.of("calibration")), {}),
-        }
+    def _card_view(self, live: LiveSession) -> View:
+        pose = self._decode(live, live.poses[-1]) if live.poses else None
+        stopped = self.health.recording_stopped(live.description.session)
+        return card_view(live, pose, live.age_s(self.clock()), stopped)

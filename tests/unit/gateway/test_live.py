@@ -152,7 +152,7 @@ def test_garbage_on_the_way_is_counted_and_the_rest_goes_on(client, gateway, hub
 
 def test_poses_of_unknown_sessions_are_not_kept(hub, made):
     hub.pose("nobody", payload(made.pose_at(1.0)))
-    assert hub._poses == {}
+    assert hub._sessions == {}
 
 
 def run(coroutine):
