@@ -77,7 +77,12 @@ def _take_patient(camera: Camera, door: Door, data: Path) -> None:
     camera.take("progress", f"/#/patients/{patient.code}", lambda: shown(".verdict", "real change"), height=1110)
     camera.take("patients", "/#/patients", lambda: shown(".chip", "real change"))
     camera.take("report", f"/#/sessions/{last}", lambda: shown(".sheet", "m/s"), height=1240)
-    camera.take("replay", f"/#/sessions/{last}/replay?t=48", lambda: shown(".replay-now", " of "), height=900)
+    camera.take(
+        "replay",
+        f"/#/sessions/{last}/replay?t=48",
+        lambda: shown(".numbers td", "0.") and not shown(".numbers td", "–"),
+        height=900,
+    )
     camera.take(
         "strides",
         f"/#/sessions/{last}/strides",
