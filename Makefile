@@ -38,7 +38,7 @@ demo: install ## synthetic patients (and a recorded walk where there is one), li
 	$(BIN)/ambula up --demo
 
 test: install ## all tests, in two processes (WORKERS=1 for one)
-	$(BIN)/python -m pytest --numprocesses $(WORKERS) --dist loadgroup --no-loadscope-reorder
+	$(BIN)/python -m pytest --numprocesses $(WORKERS) --dist loadscope --no-loadscope-reorder
 
 check: install ## lint, types (the pages against openapi.json, too), import contracts
 	$(BIN)/ruff check .

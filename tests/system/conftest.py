@@ -55,7 +55,7 @@ def processes(settings: BusSettings, tmp_path: Path) -> Iterator[Processes]:
     processes.close()
 
 
-@pytest.fixture(scope="module")
+@pytest.fixture(scope="session")
 def floor(tmp_path_factory: pytest.TempPathFactory) -> Iterator[pages.Site]:
     """A running floor with every service."""
     with pages.open_site(tmp_path_factory.mktemp("recordings")) as site:

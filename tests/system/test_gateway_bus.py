@@ -76,7 +76,7 @@ def test_a_session_that_starts_by_itself_is_seen_measured_and_finished(settings,
 
     live = LivePublisher(bus, "a", Stream(LIVE_POSE, "estimation"))
     live.forward(Message(live.stream, Envelope(0, 0, 5_000_000_000), pose_at(5.0)))
-    wait(lambda: listening.hub._age_s("a") is not None, "the skeleton has come")
+    wait(lambda: bool(listening.hub._sessions["a"].poses), "the skeleton has come")
 
     metrics = closing(StreamPublisher(bus, "a", Stream(METRICS, "metrics")))
     metrics.send(5_000_000_000, metrics_at(5.0, final=False))

@@ -3,6 +3,9 @@ import { get, linkTo } from "./api.js";
 import { el, fill } from "./dom.js";
 import { bytes } from "./units.js";
 
+const LOOK_AGAIN_MS = 2000;
+const LOOKS = 15;
+
 export class FilesPanel {
   constructor(session) {
     this.id = session.id;
@@ -21,13 +24,16 @@ export class FilesPanel {
     this.load();
   }
 
-  async load() {
+  /** A session that has just ended is being closed by the archive: its files come a moment later. */
+  async load(left = LOOKS) {
     const [files, exported] = await Promise.all([
       get("/sessions/{session}/recordings", { session: this.id }).catch(() => []),
       get("/sessions/{session}/exports", { session: this.id }).catch((problem) => problem),
     ]);
     this.showRecordings(files);
     this.showExports(exported);
+    if (left > 0 && (files.length === 0 || files.some(({ complete }) => !complete)))
+      setTimeout(() => this.node.isConnected && this.load(left - 1), LOOK_AGAIN_MS);
   }
 
   showRecordings(files) {
