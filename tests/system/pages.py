@@ -111,6 +111,8 @@ def onward(page: Chrome, to: str) -> None:
 
 def choose_protocol(page: Chrome, task: str = AS_SOURCE) -> None:
     """The button, no patient yet, then what will be done."""
+    # The button is there for whoever may press it, which the page asks first.
+    wait(page, lambda: page.find_element(By.ID, "start").is_displayed(), "a session may be started")
     page.find_element(By.ID, "start").click()
     wait(page, lambda: text(page, ".start-step h2") == "Whose session is it?", "the first step")
     onward(page, "What will be done?")
