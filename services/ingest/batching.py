@@ -45,24 +45,31 @@ class BatchGovernor:
     """How many ticks a message should hold, from how far a paced session lags behind its clock.
 
     One tick while it keeps up. After a second behind it takes one more, up to the most; after a while in time one
-    less. Replays without a pace have no lag and keep one tick, so their messages are those of a plain loop.
+    less, and where that was too few, it waits twice as long before it tries again. Replays without a pace have no lag
+    and keep one tick, so their messages are those of a plain loop.
     """
 
     parameters: IngestParameters = PARAMETERS
     ticks: int = 1
     _since_s: float | None = None
+    _patience_s: float | None = None
+    _has_shrunk: bool = False
 
     def observe(self, now_s: float, lag_s: float) -> int:
-        """`now_s` monotonic; `lag_s` how late the oldest message that is due would be sent."""
+        """`now_s` monotonic; `lag_s` how late the oldest message that is due would be sent, or is read."""
         if self._since_s is None:
-            self._since_s = now_s
-        passed = now_s - self._since_s
+            self._since_s, self._patience_s = now_s, self.parameters.shrink_after_s
+        passed, patience_s = now_s - self._since_s, self._patience_s or 0.0
         if self.parameters.lag_in_time_s < lag_s < self.parameters.lag_behind_s:
             self._since_s = now_s
         elif lag_s >= self.parameters.lag_behind_s and passed >= self.parameters.grow_after_s:
             self.ticks = min(self.ticks + 1, self.parameters.most_ticks)
             self._since_s = now_s
-        elif lag_s <= self.parameters.lag_in_time_s and passed >= self.parameters.shrink_after_s:
+            if self._has_shrunk:
+                self._patience_s = min(2.0 * patience_s, self.parameters.longest_patience_s)
+            self._has_shrunk = False
+        elif lag_s <= self.parameters.lag_in_time_s and passed >= patience_s:
+            self._has_shrunk = self.ticks > 1
             self.ticks = max(self.ticks - 1, 1)
             self._since_s = now_s
         return self.ticks

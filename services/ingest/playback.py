@@ -192,6 +192,7 @@ class Playback:
         first = self._feed.peek()
         lag_s = max(0.0, (limit_ns - first.captured_ns) * 1e-9) if first is not None else 0.0
         if self._pace.paced:
+            lag_s = max(lag_s, self._reading_lag_s(now_s))
             self._batcher.ticks = max(self._least_ticks, self._governor.observe(now_s, lag_s))
             grown = self._batcher.ticks > self._least_ticks
             self._batcher.longest_ns = round(self._parameters.longest_message_s * 1e9) if grown else None
@@ -201,6 +202,13 @@ class Playback:
                 return
             for batch in self._batcher.add(self._feed.pop()):
                 self._send(batch)
+
+    def _reading_lag_s(self, now_s: float) -> float:
+        """How far the slowest reader is behind what was sent, beyond what is usual: fewer messages help it, too."""
+        done_ns = self.readers.slowest_ns(now_s)
+        if not done_ns:
+            return 0.0
+        return max(0.0, (self._captured_ns - done_ns) * 1e-9 - self._parameters.told_late_s)
 
     def _send(self, message: SourceMessage) -> None:
         payload = message.payload

@@ -90,7 +90,20 @@ def test_messages_grow_under_lag_and_shrink_afterwards():
     assert ticks[-1] == 5
     assert all(0 <= after - before <= 1 for before, after in itertools.pairwise(ticks))
     assert [governor.observe(8 + k * 0.1, 0.05) for k in range(300)][-1] == 5
-    assert [governor.observe(38 + k * 0.1, 0.0) for k in range(600)][-1] == 1
+    assert [governor.observe(38 + k, 0.0) for k in range(300)][-1] == 1
+
+
+def test_messages_that_shrank_too_early_wait_twice_as_long():
+    governor, s, shrunk_s = BatchGovernor(IngestParameters()), 0.0, []
+    for _ in range(6000):
+        before = governor.ticks
+        # Three ticks are needed to keep up.
+        ticks = governor.observe(s, 0.5 if before < 3 else 0.0)
+        shrunk_s += [s] if ticks < before else []
+        s += 0.5
+    waits = [after - before for before, after in itertools.pairwise(shrunk_s)]
+    assert all(later > 1.8 * earlier for earlier, later in itertools.pairwise(waits[:4]))
+    assert max(waits) < 1000.0
 
 
 def test_batches_may_change_size_and_lose_nothing():
