@@ -97,7 +97,8 @@ def test_a_silent_camera_ends_its_session_and_frees_the_port(stage, port):
         stage.start(spec, speed=1.0)
         wait_until(lambda: len(batches(stage)) >= 10)
         assert "another session listens" in stage.start(spec, speed=1.0, session="s2")["error"]
-        assert "runs already" in stage.start(spec, speed=1.0)["error"]
+        assert stage.start(spec, speed=1.0)["session"] == "s1", "the same order again is the same session"
+        assert "runs already" in stage.start(spec, speed=2.0)["error"]
     wait_until(lambda: stage.ends("s1") == 1)
     assert "no frame of a Kinect came" in stage.start(spec, speed=1.0, session="s3")["error"]
     with Sender(port):

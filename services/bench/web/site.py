@@ -20,7 +20,7 @@ from services.cli.supervisor import Supervisor
 from services.flow.message import Envelope
 
 SERVICES = ["archive", "estimation", "segmentation", "metrics", "gateway", "ingest"]
-WALK = "synthetic:walk?speed={speed:.2f}&seed={seed}&duration=900"
+WALK = "synthetic:walk?speed={speed:.2f}&seed={seed}&duration=900&truth=0"
 READY_S = 300.0
 SESSION_WORD = 2
 
