@@ -15,12 +15,8 @@ class IngestParameters:
     lag_behind_s: float = 0.1  # later than this is behind
     lag_in_time_s: float = 0.03  # earlier than this is in time
     grow_after_s: float = 1.0  # of being behind, before messages grow by one tick
-    told_late_s: float = (
-        0.4  # s that a reader is behind when all is well: it writes, and says so ten times a second
-    )
-    shrink_after_s: float = (
-        60.0  # of being in time, before they shrink by one; longer after a try that failed
-    )
+    told_late_s: float = 0.4  # s that a reader is behind when all is well: it writes, and says so ten times a second
+    shrink_after_s: float = 60.0  # of being in time, before they shrink by one; longer after a try that failed
     longest_patience_s: float = 900.0  # before messages shrink again, however often it has failed
     most_ahead_s: float = 10.0  # s of session time that an unpaced replay may be ahead of its slowest reader
     silent_after_s: float = 60.0  # without any step forward a reader is no longer waited for
