@@ -14,99 +14,58 @@ from services.gateway import pages, problems
 from services.gateway.access.rules import check_rules, described
 from services.gateway.access.scope import EVERYTHING
 from services.gateway.accounts import first_run
-from services.gateway.accounts.administration import router as administration
 from services.gateway.accounts.housekeeping import forget_expired_sign_ins
 from services.gateway.accounts.oidc.routes import OidcServices
-from services.gateway.accounts.oidc.routes import router as oidc
-from services.gateway.accounts.own import router as own_account
 from services.gateway.accounts.passwords import Passwords
 from services.gateway.accounts.records import has_accounts
-from services.gateway.accounts.routes import router as accounts
 from services.gateway.audit.heads import Heads
-from services.gateway.audit.routes import router as audit
 from services.gateway.audit.trail import AuditTrail
-from services.gateway.clinics.routes import router as clinics
 from services.gateway.context import Gateway
 from services.gateway.control import Control
 from services.gateway.database import DatabaseError, open_database
-from services.gateway.devices.routes import router as devices
-from services.gateway.directory.routes import router as names
 from services.gateway.directory.store import NameDirectory
 from services.gateway.erasure.eraser import Eraser
 from services.gateway.erasure.housekeeping import Housekeeping
-from services.gateway.erasure.routes import router as erasure
 from services.gateway.erasure.tombstones import Tombstones, TombstonesUnreadable
-from services.gateway.exports.routes import router as exports
-from services.gateway.fhir.routes import router as fhir
-from services.gateway.health.routes import router as health
 from services.gateway.housekeeping import keep_house
-from services.gateway.keys.routes import router as keys
 from services.gateway.limits import RateLimit
 from services.gateway.live.hub import LiveHub
-from services.gateway.live.routes import router as live_routes
 from services.gateway.monitoring.requests import CountRequests, RequestNumbers
-from services.gateway.monitoring.routes import router as monitoring
 from services.gateway.monitoring.site import site_registry
-from services.gateway.patients.record_routes import router as records
-from services.gateway.patients.routes import router as patients
 from services.gateway.problems import ProblemOut
-from services.gateway.progress.routes import router as progress
-from services.gateway.recordings.routes import router as recordings
-from services.gateway.recycling.routes import router as recycling
-from services.gateway.references.routes import router as references
-from services.gateway.replay.routes import router as replay
-from services.gateway.report.routes import router as reports
-from services.gateway.roster.routes import router as roster
+from services.gateway.routers import ROUTERS, ROUTES
 from services.gateway.security import BodyLimit, HostNames, SecurityHeaders
 from services.gateway.sessions.keeper import SessionKeeper
-from services.gateway.sessions.routes import router as sessions
 from services.gateway.settings import GatewaySettings
-from services.gateway.sharing.routes import router as sharing
-from services.gateway.sources.routes import router as sources
-from services.gateway.treatments.routes import router as treatments
-from services.gateway.versions.routes import router as versions
-from services.gateway.visits.routes import router as visits
 
 DESCRIPTION = "Patients, sessions, metrics and recordings of one Ambula site. Research software, not a medical device."
-
-ROUTERS = (
-    accounts,
-    own_account,
-    oidc,
-    administration,
-    clinics,
-    keys,
-    devices,
-    sharing,
-    audit,
-    patients,
-    names,
-    recycling,
-    erasure,
-    records,
-    roster,
-    visits,
-    progress,
-    treatments,
-    references,
-    reports,
-    sessions,
-    recordings,
-    replay,
-    exports,
-    versions,
-    fhir,
-    sources,
-    health,
-    live_routes,
-    monitoring,
-)
-
-ROUTES = [route for router in ROUTERS for route in router.routes]
 
 
 def create_app(settings: GatewaySettings, live: LiveHub, control: Control) -> FastAPI:
     """Put the gateway together. Opens the database; raises DatabaseError when it cannot be used."""
+    gateway = _gateway(settings, live, control)
+    app = FastAPI(
+        title="Ambula",
+        version=version("ambula"),
+        description=DESCRIPTION,
+        lifespan=lambda _: _life(gateway),
+        docs_url=None,
+        redoc_url=None,
+        openapi_url="/v1/openapi.json",
+    )
+    app.state.gateway = gateway
+    app.state.oidc = OidcServices(settings.oidc)
+    problems.install(app)
+    check_rules(ROUTES)
+    for router in ROUTERS:
+        app.include_router(router)
+    pages.install(app, settings.pages_dir)
+    _guard(app, gateway)
+    app.openapi = lambda: _openapi(app)  # type: ignore[method-assign]
+    return app
+
+
+def _gateway(settings: GatewaySettings, live: LiveHub, control: Control) -> Gateway:
     database = open_database(settings.database_url)
     keeper = SessionKeeper(database, live, live.parameters, settings.clinic)
     directory = NameDirectory(settings.directory_url, settings.directory_key)
@@ -114,54 +73,44 @@ def create_app(settings: GatewaySettings, live: LiveHub, control: Control) -> Fa
     stones = Tombstones(settings.own_dir)
     eraser = Eraser(database, directory, stones, settings.data_dir, keeper, live, control)
     _erase_again(eraser)
-    house_rules = Housekeeping(eraser, Heads(settings.own_dir), live.parameters)
-    jobs: dict[str, Callable[[], object]] = {
-        "sign_ins": partial(forget_expired_sign_ins, database, live.parameters),
+    return Gateway(settings, live.parameters, database, keeper, live, control, Passwords(), numbers, directory, eraser)
+
+
+@asynccontextmanager
+async def _life(gateway: Gateway) -> AsyncIterator[None]:
+    gateway.live.bind(asyncio.get_running_loop())
+    house = asyncio.create_task(keep_house(_jobs(gateway)))
+    yield
+    house.cancel()
+    # A job that is under way ends before the database is closed.
+    with suppress(asyncio.CancelledError):
+        await house
+    await gateway.live.stop()
+    gateway.directory.close()
+    gateway.database.close()
+
+
+def _jobs(gateway: Gateway) -> dict[str, Callable[[], object]]:
+    """What is done now and then, by name."""
+    house_rules = Housekeeping(gateway.eraser, Heads(gateway.settings.own_dir), gateway.parameters)
+    return {
+        "sign_ins": partial(forget_expired_sign_ins, gateway.database, gateway.parameters),
         "bin": house_rules.empty_bin,
         "retention": house_rules.keep_no_longer,
         "recordings": house_rules.remove_recordings,
         "audit": house_rules.sign_audit,
     }
 
-    @asynccontextmanager
-    async def lifespan(_: FastAPI) -> AsyncIterator[None]:
-        live.bind(asyncio.get_running_loop())
-        house = asyncio.create_task(keep_house(jobs))
-        yield
-        house.cancel()
-        # A job that is under way ends before the database is closed.
-        with suppress(asyncio.CancelledError):
-            await house
-        await live.stop()
-        directory.close()
-        database.close()
 
-    app = FastAPI(
-        title="Ambula",
-        version=version("ambula"),
-        description=DESCRIPTION,
-        lifespan=lifespan,
-        docs_url=None,
-        redoc_url=None,
-        openapi_url="/v1/openapi.json",
-    )
-    app.state.gateway = Gateway(
-        settings, live.parameters, database, keeper, live, control, Passwords(), numbers, directory, eraser
-    )
-    app.state.oidc = OidcServices(settings.oidc)
-    problems.install(app)
-    check_rules(ROUTES)
-    for router in ROUTERS:
-        app.include_router(router)
-    pages.install(app, settings.pages_dir)
-    app.add_middleware(AuditTrail, database=database)
-    app.add_middleware(BodyLimit, most_bytes=live.parameters.most_body_bytes, within_s=live.parameters.body_within_s)
-    app.add_middleware(HostNames, names=settings.host_names)
-    app.add_middleware(RateLimit, parameters=live.parameters)
-    app.add_middleware(CountRequests, numbers=RequestNumbers(numbers))
+def _guard(app: FastAPI, gateway: Gateway) -> None:
+    """What every request passes, the innermost first."""
+    bounds = gateway.parameters
+    app.add_middleware(AuditTrail, database=gateway.database)
+    app.add_middleware(BodyLimit, most_bytes=bounds.most_body_bytes, within_s=bounds.body_within_s)
+    app.add_middleware(HostNames, names=gateway.settings.host_names)
+    app.add_middleware(RateLimit, parameters=bounds)
+    app.add_middleware(CountRequests, numbers=RequestNumbers(gateway.numbers))
     app.add_middleware(SecurityHeaders)
-    app.openapi = lambda: _openapi(app)  # type: ignore[method-assign]
-    return app
 
 
 def _erase_again(eraser: Eraser) -> None:

@@ -11,7 +11,7 @@ from fastapi.routing import APIWebSocketRoute
 from starlette.websockets import WebSocketDisconnect
 
 from services.gateway.access.roles import MAY, Permission, Role
-from services.gateway.app import ROUTES
+from services.gateway.routers import ROUTES
 from tests.unit.gateway.security.operations import DOCUMENT, Operation, operations
 from tests.unit.gateway.security.site import CALLERS, PASSWORD, ROLES, Site
 
